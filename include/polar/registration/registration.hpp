@@ -1,0 +1,66 @@
+// What a registration hands on: a pose with its covariance for every view, the fused template, and the
+// account of how both were found.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "polar/core/pose.hpp"
+
+namespace polar {
+
+/// One view's result. Lengths are in units of Normalisation::scale_nm.
+struct RegisteredView {
+  Pose template_from_view;
+  /// Covariance of (rotation, translation): left perturbation x -> exp(w) x + v in the template frame,
+  /// rad^2, rad x length, length^2.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  double log_likelihood = 0;  // mean natural log density per localisation (length^-3, planar length^-2)
+  double margin = 0;          // log_likelihood minus that of the second-best basin found, >= 0
+  double outlier_fraction = 0;  // expected share of localisations that the template does not explain
+  double visibility = 1;        // estimated share of the template that the view shows
+  int n_used = 0;
+  bool accepted = false;
+  std::string reason = "not registered";  // why rejected; empty when accepted
+};
+
+/// Mixture of centres, the fused template in its own frame.
+struct FusedTemplate {
+  Eigen::Matrix3Xd centre;  // 3 x K
+  Eigen::VectorXd weight;   // K, sum 1
+  double width = 0;         // standard deviation of every centre (label size), length
+  double outlier_fraction = 0;
+  double outlier_density = 0;  // length^-3 (planar length^-2)
+};
+
+/// sigma_eff^2 = a^2 sigma^2 + b^2, fitted by likelihood; far from a = 1, b = label size means that the
+/// table's uncertainties do not describe its noise.
+struct Calibration {
+  double lateral_factor = 1, axial_factor = 1;        // a
+  double lateral_extra = 0, axial_extra = 0;          // b, length
+};
+
+struct StartReport {
+  std::string name;                    // "random 3", "imaged", ...
+  double held_out_log_likelihood = 0;  // per localisation that was kept out of the fusion
+  bool won = false;
+};
+
+struct Registration {
+  std::vector<RegisteredView> view;
+  FusedTemplate fused;
+  Calibration calibration;
+  std::vector<StartReport> starts;
+  int rounds = 0;
+  bool converged = false;
+  std::string stopped_because = "never ran";
+  std::vector<std::string> warnings;
+  struct Timing {
+    std::string stage;
+    double seconds = 0;
+  };
+  std::vector<Timing> timings;
+};
+
+}  // namespace polar

@@ -1,0 +1,29 @@
+// The one error type of the project: what is wrong, where, and what to do, in one line.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace smlm {
+
+/// The value is the process's exit code (docs/faults.md).
+enum class Fault { usage = 2, input = 3, io = 4, numerical = 5, resource = 6 };
+
+class Error : public std::runtime_error {
+ public:
+  /// Reads as "<where>: <what>: <remedy>"; an empty part is left out. `where` is a file with its line or
+  /// field, or a configuration key.
+  Error(Fault fault, const std::string& where, const std::string& what, const std::string& remedy = {})
+      : std::runtime_error(join(join(where, what), remedy)), fault_(fault) {}
+
+  Fault fault() const { return fault_; }
+  int exit_code() const { return static_cast<int>(fault_); }
+
+ private:
+  static std::string join(const std::string& a, const std::string& b) {
+    return a.empty() ? b : b.empty() ? a : a + ": " + b;
+  }
+  Fault fault_;
+};
+
+}  // namespace smlm

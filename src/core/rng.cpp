@@ -1,0 +1,83 @@
+#include "polar/core/rng.hpp"
+
+#include <cmath>
+
+#include "polar/core/so3.hpp"
+
+namespace polar {
+
+namespace {
+constexpr std::uint32_t kMultiply0 = 0xD2511F53, kMultiply1 = 0xCD9E8D57;
+constexpr std::uint32_t kWeyl0 = 0x9E3779B9, kWeyl1 = 0xBB67AE85;
+constexpr int kRounds = 10;
+constexpr double kTwoPi = 6.28318530717958647692;
+constexpr double kLargeMean = 30.0;  // exp(-30) is still far from underflow
+
+std::uint32_t low(std::uint64_t v) { return static_cast<std::uint32_t>(v); }
+std::uint32_t high(std::uint64_t v) { return static_cast<std::uint32_t>(v >> 32); }
+}  // namespace
+
+std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c, std::array<std::uint32_t, 2> k) {
+  for (int round = 0; round < kRounds; ++round) {
+    const std::uint64_t p0 = std::uint64_t{kMultiply0} * c[0];
+    const std::uint64_t p1 = std::uint64_t{kMultiply1} * c[2];
+    c = {high(p1) ^ c[1] ^ k[0], low(p1), high(p0) ^ c[3] ^ k[1], low(p0)};
+    k[0] += kWeyl0;
+    k[1] += kWeyl1;
+  }
+  return c;
+}
+
+KeyedRandom::KeyedRandom(std::uint64_t seed, std::uint64_t item, std::uint32_t stage)
+    : key_{low(seed), high(seed)}, counter_{0, stage, low(item), high(item)} {}
+
+std::uint32_t KeyedRandom::bits() {
+  if (used_ == 4) {
+    block_ = philox4x32(counter_, key_);
+    ++counter_[0];
+    used_ = 0;
+  }
+  return block_[static_cast<std::size_t>(used_++)];
+}
+
+double KeyedRandom::uniform() {
+  const std::uint64_t a = bits() >> 5, b = bits() >> 6;
+  return static_cast<double>((a << 26) | b) * 0x1.0p-53;
+}
+
+std::uint64_t KeyedRandom::below(std::uint64_t n) {
+  const std::uint64_t r = (std::uint64_t{bits()} << 32) | bits();
+  return static_cast<std::uint64_t>((static_cast<long double>(r) * 0x1.0p-64L) * static_cast<long double>(n));
+}
+
+double KeyedRandom::normal() {
+  if (has_spare_) {
+    has_spare_ = false;
+    return spare_;
+  }
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+  const double angle = kTwoPi * uniform();
+  spare_ = radius * std::sin(angle);
+  has_spare_ = true;
+  return radius * std::cos(angle);
+}
+
+std::uint64_t KeyedRandom::poisson(double mean) {
+  if (mean > kLargeMean) return poisson(mean / 2) + poisson(mean / 2);
+  const double limit = std::exp(-mean);
+  std::uint64_t n = 0;
+  for (double product = uniform(); product > limit; product *= uniform()) ++n;
+  return n;
+}
+
+Eigen::Matrix3d KeyedRandom::rotation() {
+  const double u1 = uniform(), u2 = uniform(), u3 = uniform();
+  return haar_rotation(u1, u2, u3).toRotationMatrix();
+}
+
+Eigen::Vector3d KeyedRandom::direction() {
+  const double z = 2.0 * uniform() - 1.0, phi = kTwoPi * uniform(), r = std::sqrt(1.0 - z * z);
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+}  // namespace polar
