@@ -1,0 +1,27 @@
+// The engine's front door: views in, poses and the fused template out.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "polar/core/progress.hpp"
+#include "polar/core/view.hpp"
+#include "polar/registration/registration.hpp"
+
+namespace polar {
+
+struct RegistrationOptions {
+  std::uint64_t seed = 1;  // every random choice follows from it
+  std::vector<std::string> starts = {"random", "imaged"};  // hypotheses that compete
+  std::string search = "fast";                             // fast | exhaustive
+  std::string symmetry = "none";                           // none | detect | C8 | D8 | T | O | I
+};
+
+/// One sentence per fault, empty when the options can be used.
+std::vector<std::string> violations(const RegistrationOptions& options);
+
+/// Registers all views. Never throws for a bad view: that view is not accepted and says why.
+Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress);
+
+}  // namespace polar
