@@ -29,10 +29,10 @@ struct Rejection {
 struct LocalisationTable {
   std::vector<std::array<double, 3>> position_nm;  // z = 0 in planar tables
   std::vector<Covariance> covariance_nm2;
-  std::vector<std::int64_t> particle;      // index into particle_names; -1 where unassigned
+  std::vector<std::int64_t> particle;       // index into particle_names; -1 where unassigned
   std::vector<std::string> particle_names;  // in order of first appearance
-  std::vector<std::uint32_t> source_file;  // index into files
-  std::vector<std::uint64_t> source_row;   // 1-based data row in that file
+  std::vector<std::uint32_t> source_file;   // index into files
+  std::vector<std::uint64_t> source_row;    // 1-based data row in that file
   std::vector<std::string> files;
   std::vector<ExtraColumn> extra;
   std::vector<Rejection> rejected;

@@ -10,7 +10,7 @@
 namespace smlm {
 
 struct Particle {
-  std::string name;                // as in the input
+  std::string name;                 // as in the input
   std::vector<std::uint32_t> rows;  // indices into the table, ascending
 };
 
