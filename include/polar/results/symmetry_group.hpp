@@ -1,0 +1,15 @@
+// The finite rotation groups that a structure can have, as lists of rotations in the structure's own
+// frame: main axis along z, two-fold axes of D_n along x, T, O and I along the cube's axes.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace polar {
+
+/// All rotations of `name`: none (or C1), C<n>, D<n> (n up to 360), T (12), O (24), I (60). The identity
+/// comes first. Throws smlm::Error (usage) for any other name.
+std::vector<Eigen::Matrix3d> symmetry_rotations(const std::string& name);
+
+}  // namespace polar

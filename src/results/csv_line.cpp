@@ -1,0 +1,42 @@
+#include "csv_line.hpp"
+
+#include <charconv>
+#include <cmath>
+
+namespace polar::results {
+
+std::vector<std::string> split_csv(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') {
+      fields.back() += c;
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else if (c != '\r') {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+std::string csv_field(const std::string& text) {
+  std::string clean, doubled;
+  for (const char c : text) clean += c == '\n' || c == '\r' ? ' ' : c;
+  if (clean.find_first_of(",\"") == std::string::npos) return clean;
+  for (const char c : clean) doubled += c == '"' ? "\"\"" : std::string(1, c);
+  return '"' + doubled + '"';
+}
+
+std::string csv_number(double value) {
+  if (std::isnan(value)) return {};
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value);
+  return {digits, end.ptr};
+}
+
+}  // namespace polar::results

@@ -1,0 +1,17 @@
+// One line of comma-separated text (RFC 4180): fields in double quotes may hold commas and doubled quotes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace polar::results {
+
+std::vector<std::string> split_csv(const std::string& line);
+
+/// The field as it must be written: quoted only where it needs to be; line breaks become spaces.
+std::string csv_field(const std::string& text);
+
+/// Shortest digits that read back to the same double; empty for NaN.
+std::string csv_number(double value);
+
+}  // namespace polar::results
