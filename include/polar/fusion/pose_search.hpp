@@ -1,0 +1,49 @@
+// FLAMES (paper III.E.a) over the likelihood of a view: rotations x a few translations, scored by look-ups in
+// direction-blurred volumes.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "polar/core/pose.hpp"
+#include "polar/flames/neighbour_graph.hpp"
+#include "polar/fusion/direction_volumes.hpp"
+
+namespace polar {
+
+struct SearchGrid {
+  std::vector<Eigen::Matrix3f> rotation;  // template_from_view
+  NeighbourGraph graph;
+  double spacing = 0;  // typical angle between neighbours, rad
+};
+
+/// Grid of about `rotations` rotations with the neighbourhood that reaches as far as 256 of 50,000 do;
+/// planar: rotations about z. Large graphs are kept in the cache directory.
+SearchGrid search_grid(int rotations, bool planar);
+
+struct SearchOptions {
+  std::vector<Eigen::Vector3f> translation = {Eigen::Vector3f::Zero()};  // tried with every rotation
+  int promising = 400;    // best rotations whose translation is then improved
+  float step = 0;         // of that improvement, halved once; 0: none
+};
+
+/// For every rotation of the grid, turned by `turn` first: the best score and its translation.
+struct GridScores {
+  std::vector<float> log_likelihood;
+  std::vector<Eigen::Vector3f> translation;
+};
+GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, const SearchGrid& grid,
+                      const Eigen::Matrix3f& turn, const SearchOptions& options);
+
+struct Basin {
+  Pose template_from_view;
+  float log_likelihood = 0;
+};
+
+/// Local optima over the grid, best first.
+std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn, int most);
+
+/// 0 and +-shift along the axes (7), planar without z (5).
+std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar);
+
+}  // namespace polar

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "mixture_kernel.hpp"
+
+namespace polar {
+
+/// The kernels of active_isa().
+const kernel::MixtureKernel& mixture_kernel();
+
+}  // namespace polar

@@ -1,0 +1,98 @@
+#include "polar/fusion/pose_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "polar/flames/local_minima.hpp"
+#include "polar/flames/rotation_grid.hpp"
+
+namespace polar {
+
+namespace {
+
+// The paper's neighbourhood: 256 of 50,000 rotations.
+constexpr double kNeighbourShare = 256.0 / 50000.0;
+constexpr int kFewestNeighbours = 10;
+constexpr int kPlanarNeighbours = 12;
+constexpr int kWorthCaching = 4000;  // rotations; smaller graphs are built in no time
+constexpr double kGroupVolume = 2 * 3.14159265358979 * 3.14159265358979;  // of SO(3), rad^3... as unit of spacing
+
+void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen::Matrix3f& rotation, float step,
+           Eigen::Vector3f& translation, float& best) {
+  constexpr int kMostSteps = 6;
+  for (int half = 0; half < 2; ++half, step *= 0.5f) {
+    for (int s = 0; s < kMostSteps; ++s) {
+      const Eigen::Vector3f here = translation;
+      for (const Eigen::Vector3f& shift : axis_shifts(step, false)) {
+        const float there = volumes.score(view, rotation, here + shift);
+        if (there > best) best = there, translation = here + shift;
+      }
+      if (translation == here) break;
+    }
+  }
+}
+
+}  // namespace
+
+SearchGrid search_grid(int rotations, bool planar) {
+  const std::vector<Eigen::Quaternionf> q = planar ? planar_rotations(rotations) : super_fibonacci(rotations);
+  const int k = planar ? kPlanarNeighbours
+                       : std::max(kFewestNeighbours, static_cast<int>(std::lround(kNeighbourShare * rotations)));
+  SearchGrid grid;
+  grid.graph = rotations >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory()) : neighbour_graph(q, k);
+  for (const Eigen::Quaternionf& r : q) grid.rotation.push_back(r.toRotationMatrix());
+  grid.spacing = planar ? 2 * 3.14159265358979 / rotations : std::cbrt(4 * kGroupVolume / rotations);
+  return grid;
+}
+
+std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar) {
+  std::vector<Eigen::Vector3f> out = {Eigen::Vector3f::Zero()};
+  for (int a = 0; a < (planar ? 2 : 3); ++a)
+    for (const float sign : {-1.0f, 1.0f}) out.push_back(sign * shift * Eigen::Vector3f::Unit(a));
+  return out;
+}
+
+GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, const SearchGrid& grid,
+                      const Eigen::Matrix3f& turn, const SearchOptions& options) {
+  const std::size_t n = grid.rotation.size();
+  GridScores out;
+  out.log_likelihood.resize(n);
+  out.translation.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Matrix3f r = grid.rotation[i] * turn;
+    float best = -INFINITY;
+    for (const Eigen::Vector3f& t : options.translation) {
+      const float there = volumes.score(view, r, t);
+      if (there > best) best = there, out.translation[i] = t;
+    }
+    out.log_likelihood[i] = best;
+  }
+  if (options.step <= 0 || options.promising <= 0) return out;
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  const std::size_t few = std::min(n, static_cast<std::size_t>(options.promising));
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(few), order.end(), [&](int a, int b) {
+    const float sa = out.log_likelihood[static_cast<std::size_t>(a)], sb = out.log_likelihood[static_cast<std::size_t>(b)];
+    return sa > sb || (sa == sb && a < b);
+  });
+  for (std::size_t k = 0; k < few; ++k) {
+    const auto i = static_cast<std::size_t>(order[k]);
+    climb(volumes, view, grid.rotation[i] * turn, options.step, out.translation[i], out.log_likelihood[i]);
+  }
+  return out;
+}
+
+std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn, int most) {
+  std::vector<float> cost(scores.log_likelihood.size());
+  std::transform(scores.log_likelihood.begin(), scores.log_likelihood.end(), cost.begin(), [](float s) { return -s; });
+  std::vector<Basin> out;
+  for (const int i : local_minima(cost, grid.graph, most)) {
+    const auto k = static_cast<std::size_t>(i);
+    out.push_back({{(grid.rotation[k] * turn).cast<double>(), scores.translation[k].cast<double>()},
+                   scores.log_likelihood[k]});
+  }
+  return out;
+}
+
+}  // namespace polar

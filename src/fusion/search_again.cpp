@@ -1,0 +1,78 @@
+#include "polar/fusion/search_again.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "polar/core/parallel.hpp"
+#include "polar/core/so3.hpp"
+#include "view_likelihood.hpp"
+
+namespace polar {
+
+namespace {
+
+struct Outcome {
+  Pose pose;
+  bool escaped = false;
+  double margin = 0;
+};
+
+Outcome best_of(const std::vector<RefinedPose>& candidates, const RefinedPose& current, double escape_rad,
+                std::size_t localisations) {
+  const auto top = std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+    return a.log_likelihood < b.log_likelihood;
+  });
+  const bool better = top != candidates.end() && top->log_likelihood > current.log_likelihood;  // eq. 14
+  const RefinedPose& best = better ? *top : current;
+  Outcome out{best.view_from_template.inverse(), false, INFINITY};
+  const auto angle = [&](const RefinedPose& p) {
+    return geodesic_angle(p.view_from_template.rotation, best.view_from_template.rotation);
+  };
+  out.escaped = better && angle(current) >= escape_rad;  // eq. 15
+  const auto consider = [&](const RefinedPose& p) {
+    if (angle(p) < escape_rad) return;
+    out.margin = std::min(out.margin, (best.log_likelihood - p.log_likelihood) / static_cast<double>(localisations));
+  };
+  for (const RefinedPose& p : candidates) consider(p);
+  consider(current);
+  return out;
+}
+
+}  // namespace
+
+SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vector3f>& axes, const Subsets& subset,
+                               const Mixture& mixture, const NoiseModel& noise, const SearchGrid& grid,
+                               const Eigen::Matrix3f& turn, const SearchAgainOptions& options,
+                               std::vector<Pose>& poses) {
+  const SigmaClasses classes = sigma_classes(views, axes, noise, options.sigma_classes);
+  const DirectionVolumes volumes(mixture, classes, directions_for(classes, noise.planar), noise.planar);
+  const BlockedMixture blocked(mixture);
+  std::vector<Outcome> outcome(views.view.size());
+  parallel_for(views.view.size(), [&](std::size_t i) {
+    std::vector<std::uint32_t> few = subset[i];
+    if (few.size() > static_cast<std::size_t>(options.most_localisations))
+      few.resize(static_cast<std::size_t>(options.most_localisations));
+    outcome[i].pose = poses[i];
+    if (few.empty()) return;
+    const GridScores scores =
+        score_grid(volumes, search_view(views.view[i], axes[i], noise, classes, few), grid, turn, options.grid);
+    const KernelLocalisations localisations = kernel_localisations(views.view[i], axes[i], noise, few);
+    ViewFrame frame(blocked);
+    const auto refined = [&](const Pose& start) {
+      return refine_pose(frame, localisations, start.inverse(), blocked.background(), noise.planar, options.evaluations);
+    };
+    std::vector<RefinedPose> candidates;
+    for (const Basin& basin : basins(scores, grid, turn, options.basins))
+      candidates.push_back(refined(basin.template_from_view));
+    outcome[i] = best_of(candidates, refined(poses[i]), options.escape_rad, few.size());
+  });
+  SearchAgainReport report;
+  for (std::size_t i = 0; i < outcome.size(); ++i) {
+    poses[i] = outcome[i].pose;
+    report.escaped += outcome[i].escaped ? 1 : 0;
+    report.margin.push_back(outcome[i].margin);
+  }
+  return report;
+}
+
+}  // namespace polar
