@@ -14,28 +14,32 @@ using Covariance = std::array<float, 6>;
 
 /// A column of the input that the engine does not use but the output keeps.
 struct ExtraColumn {
-  std::string name;            // as in the file
-  std::string unit;            // as in the file, empty when it says nothing
-  std::vector<double> values;  // one a kept row
+  std::string name;                 // as in the file
+  std::string unit;                 // as in the file, empty when it says nothing
+  std::vector<double> values;       // one a kept row; NaN where the file had nothing
+  std::vector<std::string> labels;  // of a column of text: values are indices into it
 };
 
 /// Rows that were left out, counted by reason.
 struct Rejection {
   std::string reason;
   std::uint64_t rows = 0;
+  std::uint32_t file = 0;       // index into the table's files
   std::uint64_t first_row = 0;  // 1-based data row in the source, so that a user can look it up
 };
 
 struct LocalisationTable {
   std::vector<std::array<double, 3>> position_nm;  // z = 0 in planar tables
-  std::vector<Covariance> covariance_nm2;
+  std::vector<Covariance> covariance_nm2;   // positive definite; in planar tables zz is only a placeholder
   std::vector<std::int64_t> particle;       // index into particle_names; -1 where unassigned
   std::vector<std::string> particle_names;  // in order of first appearance
   std::vector<std::uint32_t> source_file;   // index into files
   std::vector<std::uint64_t> source_row;    // 1-based data row in that file
   std::vector<std::string> files;
+  std::vector<std::string> formats;  // the reader of each file
   std::vector<ExtraColumn> extra;
   std::vector<Rejection> rejected;
+  std::vector<std::string> mapping;   // one line a used column: "x <- 'x [nm]' (nm)"
   std::vector<std::string> warnings;  // one line each, for the log and the report
   bool planar = false;                // no z, or a constant one: registered in the plane
   bool axial_sigma_assumed = false;   // sigma_z was absent: 2 x lateral

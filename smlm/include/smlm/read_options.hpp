@@ -1,0 +1,47 @@
+// How tables are to be read: the `input:` section of a configuration without its list of files.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace smlm {
+
+/// Where a quantity stands in a table whose header says nothing, or says it wrongly.
+struct ColumnMapping {
+  std::string name;          // the column's header, or its 1-based number in a table without header
+  std::string unit = "nm";   // nm, um, mm, m or px; for a covariance the same, meant squared
+  std::string kind = "std";  // std | variance; only for uncertainties
+};
+
+struct ReadOptions {
+  /// auto, or the name of a reader: csv, thunderstorm, picasso, smap, ... (see table_readers()).
+  std::string format = "auto";
+  /// Canonical name (x, y, z, sigma_x, sigma_xy, sigma_xx, particle, ...) -> column. Wins over the header;
+  /// where any uncertainty is mapped, no other uncertainty is looked for.
+  std::map<std::string, ColumnMapping> columns;
+  /// Nanometres per camera pixel, for whatever is in pixels; 0: as the file says.
+  double pixel_size_nm = 0;
+  /// Unit of lengths that nothing tells the unit of; empty: nm, with a warning.
+  std::string unit;
+  /// What uncertainties are that nothing tells the kind of (.mat files): std | variance; empty: std, with a
+  /// warning where files of that kind hold either.
+  std::string sigma_kind;
+  /// Unit of Picasso's lpz, which its versions disagree on: nm | px.
+  std::string lpz_unit = "nm";
+  /// column: a column names the particle of each row; one_per_file: a file is a particle.
+  std::string particles = "column";
+  /// The particle id that means "none"; empty: -1, and 0 in SMAP's sitenumbers.
+  std::string unassigned_particle;
+  /// Leave out rows whose position or uncertainty cannot be used, and count them; else they are an error.
+  bool drop_nonfinite = false;
+  /// Lateral standard deviation given to tables without any uncertainty, nm; the axial one is twice that.
+  double assumed_sigma_nm = 10;
+  /// Factor on MINFLUX z for the refractive index mismatch; 1 keeps z as measured.
+  double minflux_z_factor = 0.7;
+};
+
+/// One sentence per fault, each starting with its key; empty when the options can be used.
+std::vector<std::string> violations(const ReadOptions& options);
+
+}  // namespace smlm

@@ -1,0 +1,39 @@
+// Several files' tables into one.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "smlm/localisation_table.hpp"
+#include "smlm/read_options.hpp"
+
+namespace smlm {
+
+class Concatenation {
+ public:
+  Concatenation(const std::vector<std::string>& files, const ReadOptions& options);
+
+  /// Appends the table of the next file, in the order of `files`.
+  void append(LocalisationTable table);
+  /// Settles whether the whole is planar and words the warnings.
+  LocalisationTable finish();
+
+ private:
+  void name_particles(LocalisationTable& table) const;
+  void append_extra(const LocalisationTable& table, std::size_t rows_before);
+
+  const std::vector<std::string>& files_;
+  bool one_per_file_;
+  std::vector<std::string> names_;  // of the files, as short as keeps them apart
+  LocalisationTable all_;
+  std::size_t appended_ = 0;
+  std::vector<std::string> warning_order_;
+  std::map<std::string, std::vector<std::string>> warned_files_;
+};
+
+/// What files are called in the names of particles: the file name without its extensions, with as many of
+/// the folders above as tell equal ones apart.
+std::vector<std::string> short_names(const std::vector<std::string>& files);
+
+}  // namespace smlm

@@ -1,0 +1,54 @@
+#include "smlm/read_options.hpp"
+
+#include "smlm/column.hpp"
+#include "smlm/table_reader.hpp"
+#include "smlm/units.hpp"
+
+namespace smlm {
+namespace {
+
+void check_word(std::vector<std::string>& faults, const std::string& key, const std::string& value,
+                const std::vector<std::string>& allowed) {
+  std::string list;
+  for (const std::string& word : allowed) {
+    if (word == value) return;
+    if (!word.empty()) list += (list.empty() ? "" : ", ") + word;
+  }
+  faults.push_back(key + ": '" + value + "' is not one of " + list);
+}
+
+}  // namespace
+
+std::vector<std::string> violations(const ReadOptions& options) {
+  std::vector<std::string> faults;
+  std::vector<std::string> formats{"auto"};
+  for (const TableReader& reader : table_readers()) formats.emplace_back(reader.name);
+  check_word(faults, "format", options.format, formats);
+  check_word(faults, "particles", options.particles, {"column", "one_per_file"});
+  check_word(faults, "lpz_unit", options.lpz_unit, {"nm", "px"});
+  check_word(faults, "sigma_kind", options.sigma_kind, {"", "std", "variance"});
+  if (!options.unit.empty() && !units::parse_length(options.unit)) {
+    faults.push_back("unit: '" + options.unit + "' is not a length (nm, um, mm, m, px)");
+  }
+  if (!(options.pixel_size_nm >= 0 && options.pixel_size_nm < 1e6)) {
+    faults.emplace_back("pixel_size_nm: must be positive, or 0 for what the file says");
+  }
+  if (!(options.assumed_sigma_nm > 0 && options.assumed_sigma_nm < 1e6)) {
+    faults.emplace_back("assumed_sigma_nm: must be positive");
+  }
+  if (!(options.minflux_z_factor > 0 && options.minflux_z_factor <= 10)) {
+    faults.emplace_back("minflux_z_factor: must be positive");
+  }
+  for (const auto& [key, mapping] : options.columns) {
+    const std::string where = "columns." + key;
+    if (!quantity_named(key)) faults.push_back(where + ": is not a quantity that is read");
+    if (mapping.name.empty()) faults.push_back(where + ".name: must not be empty");
+    check_word(faults, where + ".kind", mapping.kind, {"std", "variance"});
+    if (key != "particle" && !units::parse_length(mapping.unit.substr(0, mapping.unit.find('^')))) {
+      faults.push_back(where + ".unit: '" + mapping.unit + "' is not a length (nm, um, mm, m, px)");
+    }
+  }
+  return faults;
+}
+
+}  // namespace smlm

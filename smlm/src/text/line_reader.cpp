@@ -1,0 +1,78 @@
+#include "line_reader.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include "smlm/error.hpp"
+
+namespace smlm {
+namespace {
+
+constexpr std::size_t buffer_bytes = std::size_t{1} << 20;  // also the longest line
+
+}  // namespace
+
+LineReader::LineReader(const std::string& path)
+    : path_(path), file_(gzopen(path.c_str(), "rb")), buffer_(buffer_bytes) {
+  if (!file_) throw Error(Fault::io, path, std::strerror(errno), "check the name and the permissions");
+  gzbuffer(file_.get(), 1 << 18);
+}
+
+bool LineReader::refill() {
+  if (exhausted_) return false;
+  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+  end_ -= begin_;
+  begin_ = 0;
+  if (end_ == buffer_.size()) {
+    throw Error(Fault::input, path_ + ":" + std::to_string(number_ + 1), "the line is longer than 1 MiB",
+                "is this a table of text?");
+  }
+  const int read = gzread(file_.get(), buffer_.data() + end_, static_cast<unsigned>(buffer_.size() - end_));
+  int status = Z_OK;
+  const char* reason = gzerror(file_.get(), &status);
+  if (read < 0 && status == Z_ERRNO) throw Error(Fault::io, path_, std::strerror(errno), "check the file");
+  if (read < 0 || status == Z_BUF_ERROR) {
+    throw Error(Fault::input, path_, std::string("the gzip stream is truncated or damaged (") + reason + ")",
+                "copy the file again");
+  }
+  exhausted_ = read == 0;
+  if (std::memchr(buffer_.data() + end_, '\0', static_cast<std::size_t>(read)) != nullptr) {
+    throw Error(Fault::input, path_, "holds NUL bytes, so it is not a table of text", "check its format");
+  }
+  end_ += static_cast<std::size_t>(read);
+  if (line_end_ == 0 && read > 0) {
+    const bool has_lf = std::memchr(buffer_.data(), '\n', end_) != nullptr;
+    const bool has_cr = std::memchr(buffer_.data(), '\r', end_) != nullptr;
+    line_end_ = has_cr && !has_lf ? '\r' : '\n';
+  }
+  return read > 0;
+}
+
+std::string_view LineReader::take(std::size_t length, std::size_t end_length) {
+  std::string_view line(buffer_.data() + begin_, length);
+  begin_ += length + end_length;
+  ++number_;
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
+bool LineReader::next(std::string_view& line) {
+  std::size_t searched = 0;
+  while (true) {
+    const char* start = buffer_.data() + begin_;
+    const std::size_t available = end_ - begin_;
+    const void* found =
+        available > searched ? std::memchr(start + searched, line_end_, available - searched) : nullptr;
+    if (found != nullptr) {
+      line = take(static_cast<std::size_t>(static_cast<const char*>(found) - start), 1);
+      return true;
+    }
+    searched = available;
+    if (refill()) continue;
+    if (begin_ == end_) return false;
+    line = take(end_ - begin_, 0);
+    return true;
+  }
+}
+
+}  // namespace smlm
