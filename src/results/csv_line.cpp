@@ -35,7 +35,7 @@ std::string csv_field(const std::string& text) {
 std::string csv_number(double value) {
   if (std::isnan(value)) return {};
   char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value);
+  const auto end = std::to_chars(digits, digits + sizeof digits, value + 0.0);  // -0 becomes 0
   return {digits, end.ptr};
 }
 

@@ -1,0 +1,15 @@
+// What a subcommand is: it declares its arguments on the parser, and runs once they are parsed.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace polar::cli {
+
+/// Set by the subcommand that was given: does the work, returns the exit code.
+using Action = std::function<int()>;
+
+void add_simulate(CLI::App& app, Action& action);
+void add_evaluate(CLI::App& app, Action& action);
+
+}  // namespace polar::cli

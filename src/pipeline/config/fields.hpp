@@ -1,0 +1,91 @@
+// Binds YAML to option structs through one list of fields per struct: the same list reads a file, names its
+// unknown keys and writes the effective configuration back.
+//
+//   template <class Visitor> void fields(Visitor& v, Options& o) { v.field("seed", o.seed); ... }
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "node.hpp"
+
+namespace polar::pipeline {
+
+/// Fills structs from a tree. finish() must be called on every level: it reports the keys that nobody asked
+/// for. All errors are smlm::Error (usage) that name file, line and full key.
+class FieldReader {
+ public:
+  FieldReader(const Node& map, std::string where, std::string prefix = {});
+
+  void field(const char* name, bool& value);
+  void field(const char* name, int& value);
+  void field(const char* name, std::int64_t& value);
+  void field(const char* name, std::uint64_t& value);
+  void field(const char* name, double& value);
+  void field(const char* name, std::string& value);
+  void field(const char* name, std::array<double, 2>& range);    // [low, high], or one number for both
+  void field(const char* name, std::vector<std::string>& list);  // a list, or one value
+  void field(const char* name, std::vector<double>& list);
+
+  /// A nested map; `body` is called with a reader of it (of an empty one where the key is absent).
+  template <class Body>
+  void section(const char* name, Body body) {
+    FieldReader inner = enter(name);
+    body(inner);
+    inner.finish();
+  }
+  /// A map with keys of the user's choice; `body(key, reader)` for each.
+  template <class Body>
+  void each(const char* name, Body body) {
+    const FieldReader outer = enter(name);
+    for (const auto& [key, value] : outer.map_.entries) {
+      FieldReader inner(value, where_, outer.prefix_ + key + ".");
+      body(key, inner);
+      inner.finish();
+    }
+  }
+  void finish() const;
+
+ private:
+  FieldReader enter(const char* name);
+  const Node* take(const char* name);
+  [[noreturn]] void wrong(const Node& node, const std::string& name, const std::string& expected) const;
+  template <class T>
+  T number(const Node& node, const std::string& name, const char* expected) const;
+
+  const Node& map_;
+  std::string where_, prefix_;
+  std::vector<std::string> known_;
+};
+
+/// Writes the same fields as YAML text.
+class FieldWriter {
+ public:
+  void field(const char* name, bool value);
+  void field(const char* name, int value);
+  void field(const char* name, std::int64_t value);
+  void field(const char* name, std::uint64_t value);
+  void field(const char* name, double value);
+  void field(const char* name, const std::string& value);
+  void field(const char* name, const std::array<double, 2>& range);
+  void field(const char* name, const std::vector<std::string>& list);
+  void field(const char* name, const std::vector<double>& list);
+
+  template <class Body>
+  void section(const char* name, Body body) {
+    line(std::string(name) + ":");
+    ++depth_;
+    body(*this);
+    --depth_;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  void line(const std::string& content);
+  std::string text_;
+  int depth_ = 0;
+};
+
+}  // namespace polar::pipeline

@@ -1,0 +1,114 @@
+#include "polar/pipeline/simulate_run.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "polar/results/pose_table.hpp"
+#include "polar/results/table_csv.hpp"
+#include "polar/simulation/cramer_rao.hpp"
+#include "smlm/atomic_file.hpp"
+#include "smlm/error.hpp"
+
+namespace polar {
+
+namespace {
+constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
+constexpr const char* kTruthFile = "truth.json";
+
+std::vector<PoseRow> true_poses(const Simulation& s, bool with_bound) {
+  std::vector<PoseRow> rows(s.particle.size());
+  for (const std::int64_t p : s.table.particle) ++rows[static_cast<std::size_t>(p)].n_localisations;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    PoseRow& r = rows[i];
+    const SimulatedParticle& p = s.particle[i];
+    r.particle = s.table.particle_names[i];
+    r.n_used = r.n_localisations;
+    r.accepted = true;
+    r.template_from_view = p.structure_from_view;
+    if (!with_bound) continue;
+    r.rotation_std_deg = kDegreesPerRadian * std::sqrt(p.covariance.topLeftCorner<3, 3>().trace());
+    r.translation_std_nm = std::sqrt(p.covariance.bottomRightCorner<3, 3>().trace());
+  }
+  return rows;
+}
+
+std::string sites_text(const Structure& structure) {
+  std::string text = "x [nm],y [nm],z [nm]\n";
+  char line[128];
+  for (Eigen::Index k = 0; k < structure.site_nm.cols(); ++k) {
+    std::snprintf(line, sizeof line, "%.6f,%.6f,%.6f\n", structure.site_nm(0, k), structure.site_nm(1, k),
+                  structure.site_nm(2, k));
+    text += line;
+  }
+  return text;
+}
+
+// In the plane the two-fold axes of a flat structure are out of reach.
+std::string observable_symmetry(const Structure& structure, bool planar) {
+  return planar && structure.symmetry[0] == 'D' ? "C" + structure.symmetry.substr(1) : structure.symmetry;
+}
+
+void prepare_directory(const SimulateConfig& config, bool overwrite) {
+  std::error_code ec;
+  std::filesystem::create_directories(config.directory, ec);
+  if (ec || !std::filesystem::is_directory(config.directory))
+    throw smlm::Error(smlm::Fault::io, config.directory, "cannot be created as a folder",
+                      "choose another output.directory");
+  if (!overwrite && std::filesystem::exists(config.directory + "/poses.csv"))
+    throw smlm::Error(smlm::Fault::io, config.directory, "holds a simulation already",
+                      "choose another output.directory or give --overwrite");
+}
+}  // namespace
+
+std::vector<std::string> run_simulation(const SimulateConfig& config, bool overwrite) {
+  prepare_directory(config, overwrite);
+  const Structure structure =
+      config.structure.kind == "file" ? read_structure(config.file) : make_structure(config.structure);
+  const Simulation s = simulate(structure, config.simulation);
+  const std::string folder = config.directory + "/";
+  TruthSummary truth{structure.name, observable_symmetry(structure, config.simulation.planar),
+                     std::numeric_limits<double>::quiet_NaN()};
+  if (config.simulation.cramer_rao) {
+    std::vector<Eigen::Matrix<double, 6, 6>> bound;
+    for (const SimulatedParticle& p : s.particle) bound.push_back(p.covariance);
+    truth.cramer_rao_pair_median_deg = pair_median_deg(bound, config.simulation.seed);
+  }
+  const nlohmann::json summary = {{"structure", truth.structure},
+                                  {"symmetry", truth.symmetry},
+                                  {"cramer_rao_pair_median_deg", truth.cramer_rao_pair_median_deg}};
+  smlm::write_file_atomically(folder + "localisations.csv", format_table_csv(s.table));
+  smlm::write_file_atomically(folder + "poses.csv",
+                              format_pose_table(true_poses(s, config.simulation.cramer_rao)));
+  smlm::write_file_atomically(folder + "sites.csv", sites_text(structure));
+  smlm::write_file_atomically(folder + "simulation.yaml", simulate_config_text(config));
+  smlm::write_file_atomically(folder + kTruthFile, summary.dump(2) + "\n");
+
+  std::vector<std::string> lines = {std::to_string(s.particle.size()) + " particles of " + structure.name +
+                                        " (" + truth.symmetry + "), " + std::to_string(s.table.size()) +
+                                        " localisations",
+                                    "written to " + config.directory};
+  if (std::isfinite(truth.cramer_rao_pair_median_deg))
+    lines.push_back("Cramer-Rao bound, median over pairs: " +
+                    std::to_string(truth.cramer_rao_pair_median_deg) + " degrees");
+  return lines;
+}
+
+bool read_truth_summary(const std::string& poses_csv, TruthSummary& summary) {
+  const std::string path = (std::filesystem::path(poses_csv).parent_path() / kTruthFile).string();
+  std::ifstream in(path);
+  if (!in) return false;
+  const nlohmann::json parsed = nlohmann::json::parse(in, nullptr, false);
+  if (!parsed.is_object()) throw smlm::Error(smlm::Fault::input, path, "is not JSON", "simulate again");
+  summary.structure = parsed.value("structure", "");
+  summary.symmetry = parsed.value("symmetry", "none");
+  const auto bound = parsed.find("cramer_rao_pair_median_deg");  // null stands for NaN
+  summary.cramer_rao_pair_median_deg = bound != parsed.end() && bound->is_number()
+                                           ? bound->get<double>()
+                                           : std::numeric_limits<double>::quiet_NaN();
+  return true;
+}
+
+}  // namespace polar

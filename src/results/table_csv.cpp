@@ -1,0 +1,73 @@
+#include "polar/results/table_csv.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "csv_line.hpp"
+
+namespace polar {
+
+namespace {
+constexpr int kDecimals = 4;  // 0.1 pm: far below any localisation's uncertainty
+// xx xy xz yy yz zz
+constexpr std::array<const char*, 6> kCovarianceNames = {"xx", "xy", "xz", "yy", "yz", "zz"};
+
+void append_length(std::string& text, double value) {
+  char digits[400];  // a fixed-point double has up to 309 digits before the point
+  const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, kDecimals);
+  text.append(digits, end.ptr);
+  text += ',';
+}
+
+bool diagonal(const smlm::LocalisationTable& table) {
+  for (const smlm::Covariance& c : table.covariance_nm2)
+    if (c[1] != 0 || c[2] != 0 || c[4] != 0) return false;
+  return true;
+}
+
+// Elements of a covariance that a table of this kind has.
+std::vector<std::size_t> elements(bool is_diagonal, bool planar) {
+  if (is_diagonal) return planar ? std::vector<std::size_t>{0, 3} : std::vector<std::size_t>{0, 3, 5};
+  return planar ? std::vector<std::size_t>{0, 1, 3} : std::vector<std::size_t>{0, 1, 2, 3, 4, 5};
+}
+
+std::string header(const smlm::LocalisationTable& table, bool is_diagonal) {
+  std::string text = table.planar ? "x [nm],y [nm]," : "x [nm],y [nm],z [nm],";
+  for (const std::size_t e : elements(is_diagonal, table.planar)) {
+    const std::string name = kCovarianceNames[e];
+    text += is_diagonal ? "uncertainty_" + name.substr(1) + " [nm]," : "sigma_" + name + " [nm^2],";
+  }
+  text += "particle";
+  for (const smlm::ExtraColumn& c : table.extra)
+    text += "," + results::csv_field(c.unit.empty() ? c.name : c.name + " [" + c.unit + "]");
+  return text + "\n";
+}
+
+std::string extra_field(const smlm::ExtraColumn& column, std::size_t row) {
+  const double value = column.values[row];
+  if (column.labels.empty() || std::isnan(value)) return results::csv_number(value);
+  return results::csv_field(column.labels[static_cast<std::size_t>(value)]);
+}
+}  // namespace
+
+std::string format_table_csv(const smlm::LocalisationTable& table) {
+  const bool is_diagonal = diagonal(table);
+  const std::vector<std::size_t> written = elements(is_diagonal, table.planar);
+  std::string text = header(table, is_diagonal);
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    for (std::size_t axis = 0; axis < (table.planar ? 2u : 3u); ++axis)
+      append_length(text, table.position_nm[row][axis]);
+    for (const std::size_t e : written) {
+      const double value = double(table.covariance_nm2[row][e]);
+      append_length(text, is_diagonal ? std::sqrt(value) : value);
+    }
+    const std::int64_t particle = table.particle[row];
+    if (particle >= 0) text += results::csv_field(table.particle_names[static_cast<std::size_t>(particle)]);
+    for (const smlm::ExtraColumn& c : table.extra) text += "," + extra_field(c, row);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace polar
