@@ -1,0 +1,109 @@
+#include "polar/model/trainer.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "model/network_step.hpp"
+#include "model/optimiser.hpp"
+#include "model/train_state.hpp"
+#include "polar/core/parallel.hpp"
+#include "polar/model/shapes.hpp"
+#include "polar/model/weights_file.hpp"
+#include "smlm/error.hpp"
+
+namespace polar {
+
+namespace {
+constexpr int kCleanPoints = 1024;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void check(const TrainOptions& options) {
+  const std::vector<std::string> faults = violations(options);
+  if (faults.empty()) return;
+  std::string all;
+  for (const std::string& fault : faults) all += (all.empty() ? "" : "; ") + fault;
+  throw smlm::Error(smlm::Fault::usage, "training options", all);
+}
+
+std::string report_line(const TrainState& state, const TrainOptions& options, double clouds_per_second) {
+  const double left =
+      static_cast<double>(options.steps - state.step) * options.clouds_per_step / clouds_per_second;
+  char line[160];
+  std::snprintf(line, sizeof line, "step %lld of %lld, Chamfer %.4f, rate %.2e, %.0f clouds/s, %.0f min left",
+                static_cast<long long>(state.step), static_cast<long long>(options.steps),
+                state.curve_loss.back(), learning_rate(options, state), clouds_per_second, left / 60);
+  return line;
+}
+
+std::string about(const TrainOptions& options, const TrainState& state) {
+  char text[256];
+  std::snprintf(text, sizeof text, "seed %llu, %lld steps of %d clouds, training Chamfer %.4f",
+                static_cast<unsigned long long>(options.seed), static_cast<long long>(state.step),
+                options.clouds_per_step, state.curve_loss.empty() ? NAN : state.curve_loss.back());
+  return text;
+}
+}  // namespace
+
+TrainReport train(const TrainOptions& options, Progress& progress) {
+  check(options);
+  const ShapeSet shapes = read_shapes(options.data.shapes, kCleanPoints);
+  const bool resume = !options.checkpoint.empty() && std::ifstream(options.checkpoint).good();
+  TrainState state = resume ? read_checkpoint(options.checkpoint, options) : initial_state(options);
+  if (resume) progress.note("going on from step " + std::to_string(state.step) + " of " + options.checkpoint);
+
+  const auto clouds = static_cast<std::size_t>(options.clouds_per_step);
+  NetworkStep network;
+  std::vector<TrainingCloud> batch(clouds);
+  std::vector<float> gradient;
+  TrainReport report;
+  const Clock::time_point start = Clock::now();
+  const std::int64_t first = state.step;
+  const auto rate = [&] {
+    return static_cast<double>((state.step - first) * options.clouds_per_step) / seconds_since(start);
+  };
+  while (state.step < options.steps && !progress.cancelled()) {
+    const std::uint64_t item = static_cast<std::uint64_t>(state.step) * clouds;
+    parallel_for(clouds, [&](std::size_t i) {
+      batch[i] = training_cloud(options.seed, item + i, options.data, shapes, options.degradation);
+    });
+    const double loss =
+        network.loss(state.parameters, batch, {options.seed, item, options.dropout}, gradient);
+    if (!std::isfinite(loss))
+      throw smlm::Error(smlm::Fault::numerical, "training",
+                        "the loss is not finite at step " + std::to_string(state.step),
+                        "lower learning_rate and go on from the last checkpoint");
+    adamw_step(options, gradient, state);
+    network.update(state.moments, options.batch_norm_momentum);
+    state.loss_sum += loss;
+    ++state.step;
+    if (state.step % options.report_every_steps == 0) {
+      state.curve_step.push_back(state.step);
+      state.curve_loss.push_back(state.loss_sum / options.report_every_steps);
+      state.loss_sum = 0;
+      update_plateau(options, state.curve_loss.back(), state);
+      progress.note(report_line(state, options, rate()));
+    }
+    progress.step("train", static_cast<int>(state.step), static_cast<int>(options.steps));
+    const bool last = state.step == options.steps || progress.cancelled();
+    if (!options.checkpoint.empty() && (last || state.step % options.checkpoint_every_steps == 0))
+      write_checkpoint(options.checkpoint, options, state);
+  }
+  report.step = state.curve_step;
+  report.loss = state.curve_loss;
+  report.steps_done = state.step;
+  report.clouds_per_second = state.step > first ? rate() : 0;
+  const bool complete = state.step >= options.steps;
+  report.stopped_because = complete ? "all steps done" : "it was interrupted";
+  if (complete)
+    report.weights_sha256 = write_weights(options.weights, folded(state.parameters, state.moments),
+                                          Precision::half, about(options, state));
+  return report;
+}
+
+}  // namespace polar

@@ -1,0 +1,148 @@
+#include "polar/model/trainer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "model/training_cloud.hpp"
+#include "polar/core/parallel.hpp"
+#include "polar/model/chamfer.hpp"
+#include "polar/model/score.hpp"
+#include "polar/model/weights_file.hpp"
+#include "smlm/error.hpp"
+
+namespace polar {
+namespace {
+
+class Quiet : public Progress {};
+
+/// Stops before step `last` + 1.
+class StopAfter : public Progress {
+ public:
+  explicit StopAfter(int last) : last_(last) {}
+  void step(const std::string&, int done, int) override { done_ = done; }
+  bool cancelled() const override { return done_ >= last_; }
+
+ private:
+  int last_, done_ = 0;
+};
+
+class TrainerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("polar_train_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    options_.steps = 4;
+    options_.clouds_per_step = 6;
+    options_.report_every_steps = 2;
+    options_.degradation.max_points = 200;
+    options_.weights = (folder_ / "weights.h5").string();
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  TrainOptions options_;
+  std::filesystem::path folder_;
+  Quiet quiet_;
+};
+
+TEST_F(TrainerTest, sameBitsForAnyNumberOfThreads) {
+  std::set<std::string> hashes;
+  for (const int threads : {1, 2, 8}) {
+    const ThreadLimit limit(threads);
+    ASSERT_EQ(thread_limit(), std::min(threads, thread_limit()));
+    hashes.insert(train(options_, quiet_).weights_sha256);
+  }
+  EXPECT_EQ(hashes.size(), 1u);
+  EXPECT_EQ(hashes.begin()->size(), 64u);
+  options_.seed = 2;
+  hashes.insert(train(options_, quiet_).weights_sha256);
+  EXPECT_EQ(hashes.size(), 2u);
+}
+
+TEST_F(TrainerTest, goesOnFromItsCheckpointWithTheSameBits) {
+  const TrainReport whole = train(options_, quiet_);
+  ASSERT_EQ(whole.stopped_because, "all steps done");
+  options_.checkpoint = (folder_ / "checkpoint.h5").string();
+  for (const int last : {1, 3}) {  // 3: between two reports
+    StopAfter stop(last);
+    const TrainReport part = train(options_, stop);
+    EXPECT_EQ(part.stopped_because, "it was interrupted");
+    EXPECT_EQ(part.steps_done, last);
+    EXPECT_EQ(part.weights_sha256, "");
+  }
+  const TrainReport rest = train(options_, quiet_);
+  EXPECT_EQ(rest.weights_sha256, whole.weights_sha256);
+  EXPECT_EQ(rest.step, whole.step);
+  EXPECT_EQ(rest.loss, whole.loss);
+  options_.seed = 9;
+  EXPECT_THROW(train(options_, quiet_), smlm::Error);
+}
+
+TEST_F(TrainerTest, learnsToRestoreCloudsItNeverSaw) {
+  options_.steps = 200;
+  options_.clouds_per_step = 16;
+  options_.report_every_steps = 20;
+  options_.warmup_steps = 20;
+  options_.batch_norm_momentum = 0.1;
+  options_.degradation.max_points = 128;
+  options_.degradation.clean_share = 1;
+  options_.degradation.cut_share = 0;
+  const TrainReport report = train(options_, quiet_);
+  ASSERT_EQ(report.loss.size(), 10u);
+  EXPECT_LT(report.loss.back(), report.loss.front());
+  EXPECT_GT(report.clouds_per_second, 0);
+  const WeightsFile file = read_weights(options_.weights);
+  EXPECT_EQ(file.sha256, report.weights_sha256);
+  const auto model = make_pointnet(file.weights);
+  constexpr std::uint64_t kClouds = 64;
+  double restored = 0, unrelated = 0;  // what an answer that ignores its input reaches
+  Eigen::Matrix3Xf previous = training_cloud(77, kClouds, options_.data, {}, options_.degradation).target;
+  for (std::uint64_t item = 0; item < kClouds; ++item) {
+    const TrainingCloud cloud = training_cloud(77, item, options_.data, {}, options_.degradation);
+    restored += chamfer(model->decode(model->encode(cloud.input).latent), cloud.target).sum() / kClouds;
+    unrelated += chamfer(previous, cloud.target).sum() / kClouds;
+    previous = cloud.target;
+  }
+  EXPECT_LT(restored, 0.7 * unrelated) << restored << " against " << unrelated;
+  // Inference on the folded weights does what training saw.
+  EXPECT_NEAR(restored, report.loss.back(), 0.15 * report.loss.back());
+}
+
+TEST_F(TrainerTest, namesEveryFaultOfItsOptions) {
+  options_.steps = 0;
+  options_.degradation.min_visibility = 1.5;
+  options_.schedule = "linear";
+  EXPECT_EQ(violations(options_).size(), 3u);
+  EXPECT_THROW(train(options_, quiet_), smlm::Error);
+  options_.degradation.max_sigma = std::nan("");
+  EXPECT_EQ(violations(options_).size(), 4u);
+}
+
+TEST(TrainingCloud, keepsItsPromises) {
+  const Degradation d;
+  int smallest = 2000, cut = 0;
+  for (std::uint64_t item = 0; item < 300; ++item) {
+    const TrainingCloud cloud = training_cloud(1, item, {}, {}, d);
+    ASSERT_EQ(cloud.target.cols(), 1024);
+    ASSERT_GE(cloud.input.cols(), d.min_points);
+    ASSERT_LE(cloud.input.cols(), d.max_points);
+    ASSERT_TRUE(cloud.input.allFinite() && cloud.target.allFinite());
+    const float radius = std::sqrt(
+        (cloud.target.colwise() - cloud.target.rowwise().mean()).colwise().squaredNorm().maxCoeff());
+    ASSERT_LE(radius, 1.0001f);
+    ASSERT_GE(radius, 0.6999f);
+    smallest = std::min(smallest, static_cast<int>(cloud.input.cols()));
+    cut += cloud.input.cols() < 1024 && cloud.input.cols() > 716 ? 1 : 0;
+  }
+  EXPECT_LT(smallest, 60);
+  EXPECT_GT(cut, 30);
+  const TrainingCloud once = training_cloud(1, 5, {}, {}, d), again = training_cloud(1, 5, {}, {}, d);
+  EXPECT_EQ(once.input, again.input);
+  EXPECT_NE(training_cloud(1, 6, {}, {}, d).target, once.target);
+}
+
+}  // namespace
+}  // namespace polar
