@@ -1,0 +1,36 @@
+// The superparticle as a density: every localisation is a Gaussian of its own rotated covariance. The only
+// renderer: the volume file and the preview are both made from its volume.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "smlm/localisation_table.hpp"
+
+namespace polar {
+
+struct RenderOptions {
+  double voxel_nm = 0;  // edge of a voxel; 0: half the median of the smallest standard deviations
+  /// No axis gets more voxels than this: the voxel grows instead.
+  std::size_t most_voxels_per_axis = 256;
+};
+
+/// Localisations per nm^3 (planar: per nm^2, one slice), slowest axis z, then y, then x.
+struct Volume {
+  std::array<std::size_t, 3> size = {0, 0, 0};  // x, y, z
+  std::array<double, 3> origin_nm = {0, 0, 0};  // centre of the first voxel
+  double voxel_nm = 1;
+  bool planar = false;
+  std::vector<float> density;
+
+  float at(std::size_t x, std::size_t y, std::size_t z) const {
+    return density[(z * size[1] + y) * size[0] + x];
+  }
+};
+
+/// Renders into a box that holds all but the farthest 0.1 % of the localisations on every side, and their
+/// spread. The same bits for any number of threads. An empty table gives one empty voxel.
+Volume render(const smlm::LocalisationTable& table, const RenderOptions& options = {});
+
+}  // namespace polar

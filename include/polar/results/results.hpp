@@ -1,0 +1,58 @@
+// Everything a run knows at its end, and the step from the engine's units to the table's nanometres.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "polar/core/pose.hpp"
+#include "polar/core/view.hpp"
+#include "polar/registration/registration.hpp"
+#include "polar/results/pose_table.hpp"
+#include "smlm/particle_set.hpp"
+
+namespace polar {
+
+/// What produced a result, so that it can be made again.
+struct Provenance {
+  std::string program;        // name, version, commit
+  std::string configuration;  // effective, YAML
+  std::uint64_t seed = 0;
+  std::string input_hash;              // of the files' content and the configuration (see pipeline)
+  std::vector<std::string> libraries;  // "HDF5 1.10.8", ...
+};
+
+/// A run's result. particles.particles, normalisation.centre_nm and registration.view are parallel: one
+/// entry a particle, in the order of the input.
+struct Results {
+  smlm::ParticleSet particles;
+  Normalisation normalisation;
+  bool planar = false;
+  Registration registration;
+  Provenance provenance;
+};
+
+/// The engine's pose of particle i in nm: x_template = R x_nm + t_nm with x_nm as in the table and the
+/// template frame = scale_nm * engine frame.
+Pose template_from_table(const Results& results, std::size_t i);
+
+/// Covariance of that pose (rotation rad, translation nm), left perturbation in the template frame.
+Eigen::Matrix<double, 6, 6> pose_covariance_nm(const Results& results, std::size_t i);
+
+/// The rows of poses.csv; rejected particles have no pose.
+std::vector<PoseRow> pose_rows(const Results& results);
+
+/// The fused template in nm.
+struct TemplateSites {
+  Eigen::Matrix3Xd centre_nm;  // 3 x K
+  Eigen::VectorXd weight;      // K, sum 1
+  double width_nm = 0;         // standard deviation of every centre
+};
+TemplateSites template_sites(const Results& results);
+
+/// The superparticle: every localisation of every accepted particle in the template frame, with its
+/// covariance rotated along; all other columns, source files and rows as in the input.
+smlm::LocalisationTable superparticle(const Results& results);
+
+}  // namespace polar

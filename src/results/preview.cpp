@@ -1,0 +1,122 @@
+#include "polar/results/preview.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "canvas.hpp"
+
+namespace polar {
+
+namespace {
+using results::Canvas;
+using results::Colour;
+
+constexpr std::size_t kPanel_px = 360;  // longest edge of the largest panel
+constexpr std::size_t kGap_px = 12, kText = 2, kLegend_px = 44, kBar_px = 6;
+constexpr double kGamma = 0.6;      // brightens weak parts
+constexpr double kBarShare = 0.35;  // longest scale bar, of the first panel's width
+constexpr Colour kWhite = {255, 255, 255}, kFrame = {70, 70, 70};
+
+// A projection: value(u, v), u to the right, v upwards.
+struct Panel {
+  std::size_t width = 0, height = 0;  // voxels
+  std::vector<float> value;
+  const char* across = "";
+  const char* up = "";
+};
+
+Panel project(const Volume& v, std::size_t across, std::size_t up, const char* across_name,
+              const char* up_name) {
+  Panel p{v.size[across], v.size[up], std::vector<float>(v.size[across] * v.size[up], 0.0f), across_name,
+          up_name};
+  std::array<std::size_t, 3> i{};
+  for (i[2] = 0; i[2] < v.size[2]; ++i[2])
+    for (i[1] = 0; i[1] < v.size[1]; ++i[1])
+      for (i[0] = 0; i[0] < v.size[0]; ++i[0]) {
+        float& at = p.value[i[up] * p.width + i[across]];
+        at = std::max(at, v.at(i[0], i[1], i[2]));
+      }
+  return p;
+}
+
+// Bilinear, at voxel coordinates (voxel centres are whole numbers).
+double sample(const Panel& p, double u, double v) {
+  u = std::clamp(u, 0.0, static_cast<double>(p.width - 1));
+  v = std::clamp(v, 0.0, static_cast<double>(p.height - 1));
+  const auto u0 = static_cast<std::size_t>(u), v0 = static_cast<std::size_t>(v);
+  const std::size_t u1 = std::min(u0 + 1, p.width - 1), v1 = std::min(v0 + 1, p.height - 1);
+  const double fu = u - static_cast<double>(u0), fv = v - static_cast<double>(v0);
+  const auto at = [&](std::size_t x, std::size_t y) { return double(p.value[y * p.width + x]); };
+  return (1 - fv) * ((1 - fu) * at(u0, v0) + fu * at(u1, v0)) +
+         fv * ((1 - fu) * at(u0, v1) + fu * at(u1, v1));
+}
+
+void draw(Canvas& canvas, const Panel& p, std::size_t left, double zoom, double brightest) {
+  const auto width = static_cast<std::size_t>(std::lround(zoom * static_cast<double>(p.width)));
+  const auto height = static_cast<std::size_t>(std::lround(zoom * static_cast<double>(p.height)));
+  canvas.fill(left - 1, kGap_px - 1, width + 2, height + 2, kFrame);
+  for (std::size_t y = 0; y < height; ++y)
+    for (std::size_t x = 0; x < width; ++x) {
+      const double u = (static_cast<double>(x) + 0.5) / zoom - 0.5;
+      const double v = (static_cast<double>(height - 1 - y) + 0.5) / zoom - 0.5;
+      const double share = brightest > 0 ? sample(p, u, v) / brightest : 0;
+      canvas.set(left + x, kGap_px + y, results::heat(std::pow(share, kGamma)));
+    }
+  canvas.text(left + 4, kGap_px + 4, std::string(p.across) + p.up, kText, kWhite);
+}
+
+// The largest of 1, 2, 5 x 10^k that is not longer than `most`.
+double round_length(double most) {
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
+  for (const double step : {5.0, 2.0})
+    if (step * power <= most) return step * power;
+  return power;
+}
+
+std::string length_label(double nm) {
+  char text[32];
+  if (nm >= 1000)
+    std::snprintf(text, sizeof text, "%g um", nm / 1000);
+  else
+    std::snprintf(text, sizeof text, "%g nm", nm);
+  return text;
+}
+}  // namespace
+
+void write_preview_png(const std::string& path, const Volume& volume) {
+  std::vector<Panel> panels = {project(volume, 0, 1, "x", "y")};
+  if (!volume.planar) {
+    panels.push_back(project(volume, 0, 2, "x", "z"));
+    panels.push_back(project(volume, 1, 2, "y", "z"));
+  }
+  std::size_t longest = 1, tallest = 1;
+  double brightest = 0;
+  for (const Panel& p : panels) {
+    longest = std::max({longest, p.width, p.height});
+    tallest = std::max(tallest, p.height);
+    brightest = std::max(brightest, double(*std::max_element(p.value.begin(), p.value.end())));
+  }
+  const double zoom = static_cast<double>(kPanel_px) / static_cast<double>(longest);
+  const auto scaled = [&](std::size_t voxels) {
+    return static_cast<std::size_t>(std::lround(zoom * static_cast<double>(voxels)));
+  };
+  std::size_t width = kGap_px;
+  for (const Panel& p : panels) width += scaled(p.width) + kGap_px;
+  const std::size_t bottom = kGap_px + scaled(tallest);
+  const double pixels_per_nm = zoom / volume.voxel_nm;
+  const double bar_nm = round_length(kBarShare * static_cast<double>(scaled(longest)) / pixels_per_nm);
+  const std::string label = length_label(bar_nm);
+  const auto bar_px = static_cast<std::size_t>(std::lround(bar_nm * pixels_per_nm));
+  width = std::max(width, 2 * kGap_px + std::max(bar_px, Canvas::text_width(label, kText)));
+  Canvas canvas(width, bottom + kLegend_px);
+  std::size_t left = kGap_px;
+  for (const Panel& p : panels) {
+    draw(canvas, p, left, zoom, brightest);
+    left += scaled(p.width) + kGap_px;
+  }
+  canvas.fill(kGap_px, bottom + kGap_px, bar_px, kBar_px, kWhite);
+  canvas.text(kGap_px, bottom + kGap_px + kBar_px + 4, label, kText, kWhite);
+  canvas.write_png(path);
+}
+
+}  // namespace polar

@@ -1,0 +1,146 @@
+#include "polar/results/render.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "polar/core/parallel.hpp"
+
+namespace polar {
+
+namespace {
+constexpr double kTwoPi = 6.28318530717958647692;
+constexpr double kReach = 4;        // Mahalanobis radius drawn: beyond lies 1.1e-3 of a Gaussian's mass
+constexpr double kLeftOut = 0.001;  // share of localisations that may lie outside the box, on each side
+constexpr double kSmallestVoxel_nm = 0.05;
+constexpr float kFallbackVariance_nm2 = 1;  // where a table says 0
+constexpr std::size_t kSlabDepth = 4;       // slices a block; fixed, so that the order of sums is too
+
+struct Gaussian {
+  Eigen::Vector3d mean_nm, reach_nm;
+  Eigen::Matrix3d precision;
+  double peak;
+};
+
+double quantile(std::vector<double> values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+double median_sigma_nm(const smlm::LocalisationTable& table) {
+  std::vector<double> smallest;
+  for (const smlm::Covariance& c : table.covariance_nm2)
+    smallest.push_back(std::sqrt(double(table.planar ? std::min(c[0], c[3]) : std::min({c[0], c[3], c[5]}))));
+  return quantile(std::move(smallest), 0.5);
+}
+
+Gaussian gaussian(const smlm::LocalisationTable& table, std::size_t row) {
+  const auto& x = table.position_nm[row];
+  const smlm::Covariance& c = table.covariance_nm2[row];
+  Eigen::Matrix3d m;
+  m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
+      double(c[4]), double(c[5]);
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(m(axis, axis) > 0)) m(axis, axis) = double(kFallbackVariance_nm2);
+  double dimensions = 3;
+  if (table.planar) {  // the slice's own thickness does not count
+    dimensions = 2;
+    m.row(2).setZero();
+    m.col(2).setZero();
+    m(2, 2) = 1;
+  }
+  Gaussian g;
+  g.mean_nm = {x[0], x[1], table.planar ? 0.0 : x[2]};
+  g.reach_nm = kReach * m.diagonal().cwiseSqrt();
+  g.precision = m.inverse();
+  g.peak = std::pow(kTwoPi, -dimensions / 2) / std::sqrt(m.determinant());
+  return g;
+}
+
+// Chooses box and voxel.
+Volume frame(const smlm::LocalisationTable& table, const RenderOptions& o) {
+  Volume v;
+  v.planar = table.planar;
+  std::array<double, 3> low{}, high{};
+  const double margin = 2 * median_sigma_nm(table);
+  double longest = 0;
+  for (std::size_t axis = 0; axis < (table.planar ? 2u : 3u); ++axis) {
+    std::vector<double> along(table.size());
+    for (std::size_t i = 0; i < along.size(); ++i) along[i] = table.position_nm[i][axis];
+    low[axis] = quantile(along, kLeftOut) - margin;
+    high[axis] = quantile(std::move(along), 1 - kLeftOut) + margin;
+    longest = std::max(longest, high[axis] - low[axis]);
+  }
+  const double wished = o.voxel_nm > 0 ? o.voxel_nm : median_sigma_nm(table) / 2;
+  v.voxel_nm = std::max({wished, longest / static_cast<double>(o.most_voxels_per_axis), kSmallestVoxel_nm});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    v.size[axis] =
+        std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil((high[axis] - low[axis]) / v.voxel_nm)));
+    // The grid is centred on the box.
+    v.origin_nm[axis] = (low[axis] + high[axis]) / 2 - v.voxel_nm * static_cast<double>(v.size[axis] - 1) / 2;
+  }
+  v.density.assign(v.size[0] * v.size[1] * v.size[2], 0.0f);
+  return v;
+}
+
+// First and one past the last index along an axis within [centre - reach, centre + reach] and [begin, end).
+std::pair<std::size_t, std::size_t> span(const Volume& v, std::size_t axis, double centre_nm, double reach_nm,
+                                         std::size_t begin, std::size_t end) {
+  const double first = std::ceil((centre_nm - reach_nm - v.origin_nm[axis]) / v.voxel_nm);
+  const double last = std::floor((centre_nm + reach_nm - v.origin_nm[axis]) / v.voxel_nm) + 1;
+  const auto clamp = [&](double x) {
+    return static_cast<std::size_t>(std::clamp(x, static_cast<double>(begin), static_cast<double>(end)));
+  };
+  return {clamp(first), clamp(last)};
+}
+
+// One row (fixed dy, dz from the mean): along x the exponent is a parabola about x_nm with height `rest` at
+// its top, so its exponential follows from two multiplications a voxel.
+void add_row(Volume& v, const Gaussian& g, double dy, double dz, float* row) {
+  const Eigen::Matrix3d& p = g.precision;
+  const double slope = p(0, 1) * dy + p(0, 2) * dz;
+  const double rest = p(1, 1) * dy * dy + 2 * p(1, 2) * dy * dz + p(2, 2) * dz * dz - slope * slope / p(0, 0);
+  if (rest >= kReach * kReach) return;
+  const double x_nm = g.mean_nm.x() - slope / p(0, 0);
+  const double reach = std::sqrt((kReach * kReach - rest) / p(0, 0));
+  const auto [x0, x1] = span(v, 0, x_nm, reach, 0, v.size[0]);
+  const double h = v.voxel_nm;
+  const double d = v.origin_nm[0] + h * static_cast<double>(x0) - x_nm;
+  double value = g.peak * std::exp(-0.5 * (rest + p(0, 0) * d * d));
+  double ratio = std::exp(-p(0, 0) * h * (d + 0.5 * h));
+  const double bend = std::exp(-p(0, 0) * h * h);
+  for (std::size_t x = x0; x < x1; ++x) {
+    row[x] += static_cast<float>(value);
+    value *= ratio;
+    ratio *= bend;
+  }
+}
+
+// Adds one Gaussian to the slices [z_begin, z_end).
+void add(Volume& v, const Gaussian& g, std::size_t z_begin, std::size_t z_end) {
+  const auto [z0, z1] =
+      v.planar ? std::pair{z_begin, z_end} : span(v, 2, g.mean_nm.z(), g.reach_nm.z(), z_begin, z_end);
+  const auto [y0, y1] = span(v, 1, g.mean_nm.y(), g.reach_nm.y(), 0, v.size[1]);
+  for (std::size_t z = z0; z < z1; ++z)
+    for (std::size_t y = y0; y < y1; ++y) {
+      const double dy = v.origin_nm[1] + v.voxel_nm * static_cast<double>(y) - g.mean_nm.y();
+      const double dz = v.planar ? 0.0 : v.origin_nm[2] + v.voxel_nm * static_cast<double>(z) - g.mean_nm.z();
+      add_row(v, g, dy, dz, &v.density[(z * v.size[1] + y) * v.size[0]]);
+    }
+}
+}  // namespace
+
+Volume render(const smlm::LocalisationTable& table, const RenderOptions& options) {
+  if (table.size() == 0) return {{1, 1, 1}, {0, 0, 0}, 1, table.planar, {0.0f}};
+  Volume v = frame(table, options);
+  std::vector<Gaussian> gaussians(table.size());
+  parallel_for(table.size(), [&](std::size_t i) { gaussians[i] = gaussian(table, i); });
+  // Every block owns its slices and adds the localisations in their order.
+  parallel_blocks(v.size[2], kSlabDepth, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (const Gaussian& g : gaussians) add(v, g, begin, end);
+  });
+  return v;
+}
+
+}  // namespace polar

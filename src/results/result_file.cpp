@@ -1,0 +1,250 @@
+#include "polar/results/result_file.hpp"
+
+#include <cmath>
+
+#include "smlm/atomic_file.hpp"
+#include "smlm/error.hpp"
+#include "smlm/h5/file.hpp"
+
+namespace polar {
+
+namespace {
+using smlm::h5::File;
+constexpr const char* kFormat = "polar-smlm result";
+constexpr std::int32_t kFormatVersion = 1;
+constexpr int kGzip = 4;
+const smlm::h5::Storage kPacked{kGzip, {}};
+
+template <class T>
+void write_with_unit(File& file, const std::string& name, const std::vector<T>& values,
+                     const smlm::h5::Shape& shape, const char* unit, const char* meaning) {
+  const smlm::h5::Storage storage = values.empty() ? smlm::h5::Storage{} : kPacked;
+  file.write(name, values, shape, storage);
+  file.write_string_attribute(name, "unit", unit);
+  file.write_string_attribute(name, "meaning", meaning);
+}
+
+void write_poses(File& file, const Results& r) {
+  const std::size_t n = r.particles.particles.size();
+  std::vector<std::string> name, reason;
+  std::vector<double> rotation, translation, covariance, likelihood, margin, outliers, visibility;
+  std::vector<std::uint8_t> accepted;
+  std::vector<std::uint64_t> total, used;
+  for (std::size_t i = 0; i < n; ++i) {
+    const RegisteredView& v = r.registration.view[i];
+    const double gate = v.accepted ? 1 : PoseRow::kNone;  // NaN: a rejected particle has no pose
+    const Pose pose = template_from_table(r, i);
+    const Eigen::Matrix<double, 6, 6> c = pose_covariance_nm(r, i);
+    name.push_back(r.particles.particles[i].name);
+    reason.push_back(v.reason);
+    accepted.push_back(v.accepted ? 1 : 0);
+    total.push_back(r.particles.particles[i].rows.size());
+    used.push_back(static_cast<std::uint64_t>(v.n_used));
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) rotation.push_back(gate * pose.rotation(a, b));
+    for (int a = 0; a < 3; ++a) translation.push_back(gate * pose.translation[a]);
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < 6; ++b) covariance.push_back(gate * c(a, b));
+    likelihood.push_back(gate * v.log_likelihood);
+    margin.push_back(gate * v.margin);
+    outliers.push_back(gate * v.outlier_fraction);
+    visibility.push_back(gate * v.visibility);
+  }
+  file.make_group("/poses");
+  file.write_string_attribute("/poses", "convention",
+                              "x_template = rotation x_table + translation; rejected particles are NaN");
+  file.write_strings("/poses/particle", name);
+  file.write_strings("/poses/reason", reason);
+  write_with_unit(file, "/poses/accepted", accepted, {n}, "1",
+                  "1 where the particle is part of the superparticle");
+  write_with_unit(file, "/poses/n_localisations", total, {n}, "1", "localisations of the particle");
+  write_with_unit(file, "/poses/n_used", used, {n}, "1", "localisations that entered the registration");
+  write_with_unit(file, "/poses/rotation", rotation, {n, 3, 3}, "1", "rotation matrix, row-major");
+  write_with_unit(file, "/poses/translation", translation, {n, 3}, "nm", "translation");
+  write_with_unit(file, "/poses/covariance", covariance, {n, 6, 6}, "rad^2, rad nm, nm^2",
+                  "covariance of (rotation, translation), left perturbation in the template frame");
+  write_with_unit(file, "/poses/log_likelihood", likelihood, {n}, "nat",
+                  "mean log density per localisation, in units of the normalisation scale");
+  write_with_unit(file, "/poses/margin", margin, {n}, "nat",
+                  "log_likelihood above the second-best pose found");
+  write_with_unit(file, "/poses/outlier_fraction", outliers, {n}, "1",
+                  "share of localisations that the template does not explain");
+  write_with_unit(file, "/poses/visibility", visibility, {n}, "1",
+                  "share of the template that the particle shows");
+}
+
+void write_template(File& file, const Results& r) {
+  const TemplateSites sites = template_sites(r);
+  const auto k = static_cast<std::uint64_t>(sites.centre_nm.cols());
+  write_with_unit(
+      file, "/template/centre",
+      std::vector<double>(sites.centre_nm.data(), sites.centre_nm.data() + sites.centre_nm.size()), {k, 3},
+      "nm", "centres of the fused mixture, template frame");
+  write_with_unit(file, "/template/weight",
+                  std::vector<double>(sites.weight.data(), sites.weight.data() + sites.weight.size()), {k},
+                  "1", "share of each centre");
+  const FusedTemplate& fused = r.registration.fused;
+  file.write_attribute("/template", "width_nm", sites.width_nm);
+  file.write_attribute("/template", "outlier_fraction", fused.outlier_fraction);
+  const double volume = std::pow(r.normalisation.scale_nm, r.planar ? 2 : 3);
+  file.write_attribute("/template", r.planar ? "outlier_density_per_nm2" : "outlier_density_per_nm3",
+                       fused.outlier_density / volume);
+}
+
+// Where the texts of a column of text are kept; its values are indices into them.
+std::string labels_of(std::size_t column) { return "/input/column_labels/" + std::to_string(column); }
+
+void write_superparticle(File& file, const Results& r, const smlm::LocalisationTable& t) {
+  const std::size_t n = t.size();
+  const std::string group = "/superparticle/";
+  std::vector<double> position;
+  std::vector<float> covariance;
+  for (const auto& x : t.position_nm) position.insert(position.end(), x.begin(), x.end());
+  for (const auto& c : t.covariance_nm2) covariance.insert(covariance.end(), c.begin(), c.end());
+  write_with_unit(file, group + "position", position, {n, 3}, "nm", "x, y, z in the template frame");
+  write_with_unit(file, group + "covariance", covariance, {n, 6}, "nm^2",
+                  "xx, xy, xz, yy, yz, zz, rotated into the template frame");
+  write_with_unit(file, group + "particle", t.particle, {n}, "1", "row of /poses");
+  write_with_unit(file, group + "source_file", t.source_file, {n}, "1", "row of /input/file");
+  write_with_unit(file, group + "source_row", t.source_row, {n}, "1", "data row in that file, from 1");
+  file.write_attribute("/superparticle", "planar", static_cast<std::uint8_t>(r.planar ? 1 : 0));
+  file.make_group("/superparticle/columns");
+  for (std::size_t c = 0; c < t.extra.size(); ++c) {
+    const std::string name =
+        group + "columns/" + std::to_string(c);  // a column's name may hold any character
+    write_with_unit(file, name, t.extra[c].values, {n}, "see /input/column_unit", "see /input/column_name");
+  }
+  std::vector<std::string> names, units;
+  for (const smlm::ExtraColumn& c : t.extra) {
+    names.push_back(c.name);
+    units.push_back(c.unit);
+    if (!c.labels.empty()) file.write_strings(labels_of(names.size() - 1), c.labels);
+  }
+  file.write_strings("/input/column_name", names);
+  file.write_strings("/input/column_unit", units);
+  file.write_strings("/input/file", t.files);
+  std::vector<std::string> reasons;
+  std::vector<std::uint64_t> rows;
+  for (const smlm::Rejection& rejection : r.particles.table.rejected) {
+    reasons.push_back(rejection.reason);
+    rows.push_back(rejection.rows);
+  }
+  file.write_strings("/input/rejected_reason", reasons);
+  file.write("/input/rejected_rows", rows);
+}
+
+void write_run(File& file, const Results& r) {
+  const Registration& g = r.registration;
+  file.make_group("/run");
+  file.write_strings("/run/program", {r.provenance.program});
+  file.write_strings("/run/libraries", r.provenance.libraries);
+  file.write_strings("/run/configuration", {r.provenance.configuration});
+  file.write_strings("/run/input_hash", {r.provenance.input_hash});
+  file.write_attribute("/run", "seed", r.provenance.seed);
+  file.write_attribute("/run", "rounds", static_cast<std::int32_t>(g.rounds));
+  file.write_attribute("/run", "converged", static_cast<std::uint8_t>(g.converged ? 1 : 0));
+  file.write_attribute("/run", "normalisation_scale_nm", r.normalisation.scale_nm);
+  file.write_strings("/run/stopped_because", {g.stopped_because});
+  std::vector<std::string> warnings = r.particles.table.warnings;
+  warnings.insert(warnings.end(), g.warnings.begin(), g.warnings.end());
+  file.write_strings("/run/warnings", warnings);
+  std::vector<std::string> stage, start;
+  std::vector<double> seconds, held_out;
+  std::vector<std::uint8_t> won;
+  for (const auto& t : g.timings) {
+    stage.push_back(t.stage);
+    seconds.push_back(t.seconds);
+  }
+  for (const StartReport& s : g.starts) {
+    start.push_back(s.name);
+    held_out.push_back(s.held_out_log_likelihood);
+    won.push_back(s.won ? 1 : 0);
+  }
+  file.write_strings("/run/timings/stage", stage);
+  file.write("/run/timings/seconds", seconds);
+  file.write_strings("/run/starts/name", start);
+  file.write("/run/starts/held_out_log_likelihood", held_out);
+  file.write("/run/starts/won", won);
+  const double scale_nm = r.normalisation.scale_nm;
+  file.make_group("/run/calibration");
+  file.write_string_attribute("/run/calibration", "meaning",
+                              "sigma_effective^2 = factor^2 sigma^2 + extra^2");
+  file.write_attribute("/run/calibration", "lateral_factor", g.calibration.lateral_factor);
+  file.write_attribute("/run/calibration", "axial_factor", g.calibration.axial_factor);
+  file.write_attribute("/run/calibration", "lateral_extra_nm", scale_nm * g.calibration.lateral_extra);
+  file.write_attribute("/run/calibration", "axial_extra_nm", scale_nm * g.calibration.axial_extra);
+}
+
+std::string one_string(const File& file, const char* name) {
+  const std::vector<std::string> values = file.read_strings(name);
+  return values.empty() ? std::string() : values.front();
+}
+}  // namespace
+
+void write_result_file(const std::string& path, const Results& results,
+                       const smlm::LocalisationTable& superparticle) {
+  smlm::AtomicFile atomic(path);
+  File file = File::create(atomic.temporary_path());
+  file.write_string_attribute("/", "format", kFormat);
+  file.write_attribute("/", "format_version", kFormatVersion);
+  write_poses(file, results);
+  write_template(file, results);
+  write_superparticle(file, results, superparticle);
+  write_run(file, results);
+  file.close();
+  atomic.commit();
+}
+
+ResultRecord read_result_file(const std::string& path) {
+  const File file = File::open(path);
+  if (!file.has_attribute("/", "format") || file.read_string_attribute("/", "format") != kFormat)
+    throw smlm::Error(smlm::Fault::input, path, "not a result of polar run", "give a results.h5");
+  const auto version = file.read_attribute<std::int32_t>("/", "format_version");
+  if (version.size() != 1 || version[0] > kFormatVersion)
+    throw smlm::Error(smlm::Fault::input, path, "written by a later version", "update polar");
+  ResultRecord record;
+  smlm::LocalisationTable& t = record.superparticle;
+  const auto position = file.read<double>("/superparticle/position");
+  const auto covariance = file.read<float>("/superparticle/covariance");
+  t.particle = file.read<std::int64_t>("/superparticle/particle");
+  t.source_file = file.read<std::uint32_t>("/superparticle/source_file");
+  t.source_row = file.read<std::uint64_t>("/superparticle/source_row");
+  const std::size_t n = t.particle.size();
+  if (position.size() != 3 * n || covariance.size() != 6 * n || t.source_file.size() != n ||
+      t.source_row.size() != n)
+    throw smlm::Error(smlm::Fault::input, path + ":/superparticle", "columns of different lengths",
+                      "run again");
+  for (std::size_t i = 0; i < n; ++i) {
+    t.position_nm.push_back({position[3 * i], position[3 * i + 1], position[3 * i + 2]});
+    const float* c = &covariance[6 * i];
+    t.covariance_nm2.push_back({c[0], c[1], c[2], c[3], c[4], c[5]});
+  }
+  t.planar = file.read_attribute<std::uint8_t>("/superparticle", "planar").at(0) != 0;
+  t.particle_names = file.read_strings("/poses/particle");
+  t.files = file.read_strings("/input/file");
+  const auto names = file.read_strings("/input/column_name"), units = file.read_strings("/input/column_unit");
+  for (std::size_t c = 0; c < names.size() && c < units.size(); ++c) {
+    t.extra.emplace_back();
+    t.extra.back().name = names[c];
+    t.extra.back().unit = units[c];
+    t.extra.back().values = file.read<double>("/superparticle/columns/" + std::to_string(c));
+    if (file.exists(labels_of(c))) t.extra.back().labels = file.read_strings(labels_of(c));
+    if (t.extra.back().values.size() != n)
+      throw smlm::Error(smlm::Fault::input, path + ":/superparticle", "columns of different lengths",
+                        "run again");
+  }
+  const auto centre = file.read<double>("/template/centre"), weight = file.read<double>("/template/weight");
+  if (centre.size() != 3 * weight.size())
+    throw smlm::Error(smlm::Fault::input, path + ":/template", "centres and weights differ in number",
+                      "run again");
+  const auto k = static_cast<Eigen::Index>(weight.size());
+  record.sites.centre_nm = Eigen::Map<const Eigen::Matrix3Xd>(centre.data(), 3, k);
+  record.sites.weight = Eigen::Map<const Eigen::VectorXd>(weight.data(), k);
+  record.sites.width_nm = file.read_attribute<double>("/template", "width_nm").at(0);
+  record.program = one_string(file, "/run/program");
+  record.configuration = one_string(file, "/run/configuration");
+  record.input_hash = one_string(file, "/run/input_hash");
+  return record;
+}
+
+}  // namespace polar

@@ -1,0 +1,90 @@
+#include "polar/results/results.hpp"
+
+#include <cmath>
+
+namespace polar {
+
+namespace {
+constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
+
+smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c) {
+  Eigen::Matrix3d m;
+  m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
+      double(c[4]), double(c[5]);
+  const Eigen::Matrix3f s = (r * m * r.transpose()).cast<float>();
+  return {s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2)};
+}
+}  // namespace
+
+Pose template_from_table(const Results& results, std::size_t i) {
+  const Pose& engine = results.registration.view[i].template_from_view;
+  const Normalisation& n = results.normalisation;
+  return {engine.rotation, n.scale_nm * engine.translation - engine.rotation * n.centre_nm[i]};
+}
+
+Eigen::Matrix<double, 6, 6> pose_covariance_nm(const Results& results, std::size_t i) {
+  Eigen::Matrix<double, 6, 1> unit;
+  unit << 1, 1, 1, Eigen::Vector3d::Constant(results.normalisation.scale_nm);
+  return unit.asDiagonal() * results.registration.view[i].covariance * unit.asDiagonal();
+}
+
+std::vector<PoseRow> pose_rows(const Results& results) {
+  std::vector<PoseRow> rows;
+  for (std::size_t i = 0; i < results.particles.particles.size(); ++i) {
+    const smlm::Particle& particle = results.particles.particles[i];
+    const RegisteredView& view = results.registration.view[i];
+    PoseRow row;
+    row.particle = particle.name;
+    row.n_localisations = particle.rows.size();
+    row.n_used = static_cast<std::uint64_t>(view.n_used);
+    row.accepted = view.accepted;
+    row.reason = view.reason;
+    if (view.accepted) {
+      const Eigen::Matrix<double, 6, 6> covariance = pose_covariance_nm(results, i);
+      row.template_from_view = template_from_table(results, i);
+      row.rotation_std_deg = kDegreesPerRadian * std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+      row.translation_std_nm = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+      row.log_likelihood = view.log_likelihood;
+      row.margin = view.margin;
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TemplateSites template_sites(const Results& results) {
+  const double scale_nm = results.normalisation.scale_nm;
+  const FusedTemplate& fused = results.registration.fused;
+  return {scale_nm * fused.centre, fused.weight, scale_nm * fused.width};
+}
+
+smlm::LocalisationTable superparticle(const Results& results) {
+  const smlm::LocalisationTable& in = results.particles.table;
+  smlm::LocalisationTable out;
+  for (const smlm::Particle& p : results.particles.particles) out.particle_names.push_back(p.name);
+  out.files = in.files;
+  out.formats = in.formats;
+  out.planar = results.planar;
+  for (const smlm::ExtraColumn& c : in.extra) {
+    out.extra.push_back(c);
+    out.extra.back().values.clear();
+  }
+  for (std::size_t i = 0; i < results.particles.particles.size(); ++i) {
+    if (!results.registration.view[i].accepted) continue;
+    const Pose pose = template_from_table(results, i);
+    for (const std::uint32_t row : results.particles.particles[i].rows) {
+      const auto& x = in.position_nm[row];
+      const Eigen::Vector3d moved = pose * Eigen::Vector3d(x[0], x[1], x[2]);
+      out.position_nm.push_back({moved.x(), moved.y(), moved.z()});
+      out.covariance_nm2.push_back(rotated(pose.rotation, in.covariance_nm2[row]));
+      out.particle.push_back(static_cast<std::int64_t>(i));
+      out.source_file.push_back(in.source_file[row]);
+      out.source_row.push_back(in.source_row[row]);
+      for (std::size_t c = 0; c < in.extra.size(); ++c)
+        out.extra[c].values.push_back(in.extra[c].values[row]);
+    }
+  }
+  return out;
+}
+
+}  // namespace polar
