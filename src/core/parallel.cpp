@@ -80,9 +80,7 @@ void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body) {
 void parallel_blocks(std::size_t n, std::size_t block_size,
                      const std::function<void(std::size_t, std::size_t, std::size_t)>& body) {
   const std::size_t blocks = (n + block_size - 1) / block_size;
-  parallel_for(blocks, [&](std::size_t b) {
-    body(b * block_size, std::min(n, (b + 1) * block_size), b);
-  });
+  parallel_for(blocks, [&](std::size_t b) { body(b * block_size, std::min(n, (b + 1) * block_size), b); });
 }
 
 }  // namespace polar

@@ -20,7 +20,8 @@ std::vector<int> local_minima(const std::vector<float>& cost, const NeighbourGra
     return ca < cb || (ca == cb && a < b);
   };
   const std::size_t kept = std::min(minima.size(), static_cast<std::size_t>(std::max(0, most)));
-  std::partial_sort(minima.begin(), minima.begin() + static_cast<std::ptrdiff_t>(kept), minima.end(), cheaper);
+  std::partial_sort(minima.begin(), minima.begin() + static_cast<std::ptrdiff_t>(kept), minima.end(),
+                    cheaper);
   minima.resize(kept);
   return minima;
 }

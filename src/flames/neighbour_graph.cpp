@@ -105,7 +105,8 @@ NeighbourGraph neighbour_graph(const std::vector<Eigen::Quaternionf>& grid, int 
     std::vector<std::uint32_t> index(wanted);
     std::vector<float> distance(wanted);
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t found = tree.knnSearch(grid[i].coeffs().data(), wanted, index.data(), distance.data());
+      const std::size_t found =
+          tree.knnSearch(grid[i].coeffs().data(), wanted, index.data(), distance.data());
       std::int32_t* out = graph.neighbour.data() + i * static_cast<std::size_t>(k);
       std::size_t written = 0;
       for (std::size_t j = 0; j < found && written < static_cast<std::size_t>(k); ++j) {

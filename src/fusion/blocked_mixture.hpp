@@ -22,8 +22,8 @@ class BlockedMixture {
  private:
   friend class ViewFrame;
   int blocks_;
-  float background_;                                // outlier_fraction x outlier_density
-  std::vector<float> x_, y_, z_, weight_;           // weight times (1 - outlier_fraction)
+  float background_;                       // outlier_fraction x outlier_density
+  std::vector<float> x_, y_, z_, weight_;  // weight times (1 - outlier_fraction)
   std::vector<float> block_x_, block_y_, block_z_, block_radius_;
 };
 

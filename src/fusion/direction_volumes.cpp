@@ -14,12 +14,13 @@ namespace {
 constexpr float kPi = 3.14159265358979f;
 constexpr float kTwoPi = 2 * kPi;
 constexpr float kGoldenAngle = 2.39996322972865f;
-constexpr float kVoxelPerSigma = 0.8f;  // voxel over the sharpest standard deviation: nearest look-up errs by .23 of it
-constexpr int kLargestDim = 56;         // 56^3 16-bit values fit a second-level cache
-constexpr float kBorderSigmas = 2.0f;   // beyond the outermost centre
-constexpr float kReach = 3.5f;          // standard deviations a centre is drawn to
+constexpr float kVoxelPerSigma =
+    0.8f;  // voxel over the sharpest standard deviation: nearest look-up errs by .23 of it
+constexpr int kLargestDim = 56;          // 56^3 16-bit values fit a second-level cache
+constexpr float kBorderSigmas = 2.0f;    // beyond the outermost centre
+constexpr float kReach = 3.5f;           // standard deviations a centre is drawn to
 constexpr float kMostIsotropic = 1.25f;  // ratio of standard deviations that one direction still serves
-constexpr float kClassRatio = 1.35f;    // uncertainties within this ratio share a class
+constexpr float kClassRatio = 1.35f;     // uncertainties within this ratio share a class
 
 AxialSigma effective_sigma(const Symmetric3& stated, const Eigen::Vector3f& axis, const NoiseModel& noise) {
   return axial_sigma(effective_covariance(stated, axis, noise), axis);
@@ -38,8 +39,8 @@ int SigmaClasses::of(const AxialSigma& s) const {
   return best;
 }
 
-SigmaClasses sigma_classes(const Views& views, const std::vector<Eigen::Vector3f>& axes, const NoiseModel& noise,
-                           int most) {
+SigmaClasses sigma_classes(const Views& views, const std::vector<Eigen::Vector3f>& axes,
+                           const NoiseModel& noise, int most) {
   constexpr std::size_t kSamples = 20000;  // quantiles of a sample are enough to place a few classes
   std::size_t total = 0;
   for (const View& v : views.view) total += v.covariance.size();
@@ -52,8 +53,8 @@ SigmaClasses sigma_classes(const Views& views, const std::vector<Eigen::Vector3f
   std::sort(sample.begin(), sample.end(), [](const AxialSigma& a, const AxialSigma& b) {
     return a.lateral != b.lateral ? a.lateral < b.lateral : a.axial < b.axial;
   });
-  const float spread = sample.empty() ? 1.0f
-                                      : sample[sample.size() * 49 / 50].lateral / sample[sample.size() / 50].lateral;
+  const float spread =
+      sample.empty() ? 1.0f : sample[sample.size() * 49 / 50].lateral / sample[sample.size() / 50].lateral;
   const int count = std::clamp(1 + static_cast<int>(std::log(spread) / std::log(kClassRatio)), 1, most);
   SigmaClasses classes;
   for (int c = 0; c < count && !sample.empty(); ++c) {
@@ -97,31 +98,36 @@ SearchView search_view(const View& view, const Eigen::Vector3f& axis, const Nois
 
 int directions_for(const SigmaClasses& classes, bool planar) {
   float ratio = 1;
-  for (const AxialSigma& s : classes.sigma) ratio = std::max(ratio, std::max(s.axial / s.lateral, s.lateral / s.axial));
+  for (const AxialSigma& s : classes.sigma)
+    ratio = std::max(ratio, std::max(s.axial / s.lateral, s.lateral / s.axial));
   if (planar || ratio < kMostIsotropic) return 1;
   return ratio < 2 ? 32 : 64;
 }
 
-DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions, bool planar) {
+DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions,
+                                   bool planar) {
   for (int i = 0; i < directions; ++i) {  // spiral on the upper hemisphere: e and -e blur alike
     const float z = 1 - (static_cast<float>(i) + 0.5f) / static_cast<float>(directions);
     const float r = std::sqrt(1 - z * z), phi = kGoldenAngle * static_cast<float>(i);
     direction_.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
   }
   float sharpest = INFINITY;
-  for (const AxialSigma& s : classes.sigma) sharpest = std::min({sharpest, s.lateral, planar ? s.lateral : s.axial});
+  for (const AxialSigma& s : classes.sigma)
+    sharpest = std::min({sharpest, s.lateral, planar ? s.lateral : s.axial});
   const Eigen::Vector3f low = mixture.centre.rowwise().minCoeff(), high = mixture.centre.rowwise().maxCoeff();
   const Eigen::Vector3f border = Eigen::Vector3f::Constant(kBorderSigmas * sharpest);
   const Eigen::Vector3f extent = high - low + 2 * border;
   voxel_ = std::max(kVoxelPerSigma * sharpest, extent.maxCoeff() / static_cast<float>(kLargestDim - 1));
-  for (int a = 0; a < 3; ++a) dim_[a] = planar && a == 2 ? 1 : static_cast<int>(std::ceil(extent[a] / voxel_)) + 1;
+  for (int a = 0; a < 3; ++a)
+    dim_[a] = planar && a == 2 ? 1 : static_cast<int>(std::ceil(extent[a] / voxel_)) + 1;
   origin_ = low - border;
   if (planar) origin_.z() = 0;
   const auto voxels = static_cast<std::size_t>(dim_[0] * dim_[1] * dim_[2]);
   stride_ = (voxels + kernel::kLanes - 1) / kernel::kLanes * kernel::kLanes;
   value_.resize(stride_ * direction_.size() * classes.sigma.size());
 
-  const auto background = static_cast<float>(std::max(mixture.outlier_fraction * mixture.outlier_density, 1e-12));
+  const auto background =
+      static_cast<float>(std::max(mixture.outlier_fraction * mixture.outlier_density, 1e-12));
   zero_ = std::log(background);
   const float highest = kTwoPi * sharpest * sharpest * (planar ? 1 : std::sqrt(kTwoPi) * sharpest);
   scale_ = 32000.0f / std::max(1.0f, std::log(1.0f / highest + background) - zero_);
@@ -132,10 +138,13 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
     const Eigen::Vector3f e = direction_[v % direction_.size()];
     const float lat2 = sigma.lateral * sigma.lateral, ax2 = sigma.axial * sigma.axial;
     Eigen::Matrix3f c = lat2 * Eigen::Matrix3f::Identity() + (ax2 - lat2) * e * e.transpose();
-    if (planar) c = lat2 * Eigen::Matrix3f::Identity();
-    else if (direction_.size() == 1) c = (2 * lat2 + ax2) / 3 * Eigen::Matrix3f::Identity();
+    if (planar)
+      c = lat2 * Eigen::Matrix3f::Identity();
+    else if (direction_.size() == 1)
+      c = (2 * lat2 + ax2) / 3 * Eigen::Matrix3f::Identity();
     const Eigen::Matrix3f p = c.inverse();
-    const float norm = planar ? 1 / (kTwoPi * lat2) : 1 / std::sqrt(kTwoPi * kTwoPi * kTwoPi * c.determinant());
+    const float norm =
+        planar ? 1 / (kTwoPi * lat2) : 1 / std::sqrt(kTwoPi * kTwoPi * kTwoPi * c.determinant());
     const Eigen::Vector3f reach = kReach * c.diagonal().cwiseSqrt() / voxel_;
     // Rows along x: q(i) = a + b i + c i^2 with i in voxels from the volume's edge.
     const float cxx = p(0, 0) * voxel_ * voxel_;
@@ -145,7 +154,9 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
       const float amplitude = inlier * mixture.weight[k] * norm;
       if (amplitude < 1e-6f * background) continue;
       const auto first = [&](int a) { return std::max(0, static_cast<int>(std::ceil(at[a] - reach[a]))); };
-      const auto last = [&](int a) { return std::min(dim_[a] - 1, static_cast<int>(std::floor(at[a] + reach[a]))); };
+      const auto last = [&](int a) {
+        return std::min(dim_[a] - 1, static_cast<int>(std::floor(at[a] + reach[a])));
+      };
       for (int z = planar ? 0 : first(2); z <= (planar ? 0 : last(2)); ++z)
         for (int y = first(1); y <= last(1); ++y) {
           const float dy = (static_cast<float>(y) - at.y()) * voxel_;
@@ -156,17 +167,19 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
           // dx = voxel (i - at.x): expand in i.
           const float b = 2 * voxel_ * half - 2 * cxx * at.x();
           const float a = rest + cxx * at.x() * at.x() - 2 * voxel_ * half * at.x();
-          mixture_kernel().add_gaussian_row(density.data() + (z * dim_[1] + y) * dim_[0], first(0), last(0) + 1,
-                                            amplitude, a, b, cxx);
+          mixture_kernel().add_gaussian_row(density.data() + (z * dim_[1] + y) * dim_[0], first(0),
+                                            last(0) + 1, amplitude, a, b, cxx);
         }
     }
-    mixture_kernel().quantise_log(density.data(), static_cast<int>(stride_), zero_, scale_, value_.data() + v * stride_);
+    mixture_kernel().quantise_log(density.data(), static_cast<int>(stride_), zero_, scale_,
+                                  value_.data() + v * stride_);
   });
 }
 
 const std::int16_t* DirectionVolumes::volume(int sigma_class, int direction) const {
   return value_.data() +
-         (static_cast<std::size_t>(sigma_class) * direction_.size() + static_cast<std::size_t>(direction)) * stride_;
+         (static_cast<std::size_t>(sigma_class) * direction_.size() + static_cast<std::size_t>(direction)) *
+             stride_;
 }
 
 int DirectionVolumes::nearest_direction(const Eigen::Vector3f& e) const {
@@ -193,8 +206,8 @@ float DirectionVolumes::score(const SearchView& view, const Eigen::Matrix3f& rot
     for (int begin = 0; begin < part.count; begin += kBatch) {
       const int n = std::min(kBatch, part.count - begin);
       const auto at = static_cast<std::size_t>(begin);
-      mixture_kernel().voxel_index(part.x.data() + at, part.y.data() + at, part.z.data() + at, n, r.data(), t.data(), dim_,
-                                   index);
+      mixture_kernel().voxel_index(part.x.data() + at, part.y.data() + at, part.z.data() + at, n, r.data(),
+                                   t.data(), dim_, index);
       std::int32_t sum0 = 0, sum1 = 0, sum2 = 0, sum3 = 0;
       int j = 0;
       for (; j + 4 <= n; j += 4) {

@@ -11,9 +11,9 @@ namespace polar {
 
 namespace {
 constexpr float kTwoPi = 6.28318530717958647692f;
-constexpr float kCutOff = 4.0f;               // standard deviations; as in the kernel
-constexpr float kNearlyIsotropic = 1.02f;     // ratio of standard deviations below which no axis is told apart
-constexpr float kSmallestVariance = 1e-10f;   // (1e-5 of the particle radius)^2: "exact" localisations
+constexpr float kCutOff = 4.0f;              // standard deviations; as in the kernel
+constexpr float kNearlyIsotropic = 1.02f;    // ratio of standard deviations below which no axis is told apart
+constexpr float kSmallestVariance = 1e-10f;  // (1e-5 of the particle radius)^2: "exact" localisations
 
 Eigen::Matrix3f matrix(const Symmetric3& c) {
   Eigen::Matrix3f m;
@@ -25,7 +25,8 @@ Eigen::Matrix3f matrix(const Symmetric3& c) {
 Eigen::Vector3f uncertainty_axis(const View& view, bool planar) {
   if (planar || view.covariance.empty()) return Eigen::Vector3f::UnitZ();
   Eigen::Matrix3f mean = Eigen::Matrix3f::Zero();
-  for (const Symmetric3& c : view.covariance) mean += matrix(c) / std::max(c[0] + c[3] + c[5], kSmallestVariance);
+  for (const Symmetric3& c : view.covariance)
+    mean += matrix(c) / std::max(c[0] + c[3] + c[5], kSmallestVariance);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(mean);
   const Eigen::Vector3f v = eigen.eigenvalues();
   if (v[2] < kNearlyIsotropic * kNearlyIsotropic * v[0]) return Eigen::Vector3f::UnitZ();
@@ -39,7 +40,8 @@ AxialSigma axial_sigma(const Symmetric3& covariance, const Eigen::Vector3f& axis
   return {std::sqrt(std::max(0.0f, 0.5f * (c.trace() - along))), std::sqrt(std::max(0.0f, along))};
 }
 
-Symmetric3 effective_covariance(const Symmetric3& stated, const Eigen::Vector3f& axis, const NoiseModel& noise) {
+Symmetric3 effective_covariance(const Symmetric3& stated, const Eigen::Vector3f& axis,
+                                const NoiseModel& noise) {
   const auto al = static_cast<float>(noise.lateral_factor), aa = static_cast<float>(noise.axial_factor);
   const auto bl = static_cast<float>(noise.lateral_extra * noise.lateral_extra + noise.width * noise.width);
   const auto ba = static_cast<float>(noise.axial_extra * noise.axial_extra + noise.width * noise.width);
@@ -50,8 +52,8 @@ Symmetric3 effective_covariance(const Symmetric3& stated, const Eigen::Vector3f&
   return {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
 }
 
-KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f& axis, const NoiseModel& noise,
-                                         const std::vector<std::uint32_t>& subset) {
+KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f& axis,
+                                         const NoiseModel& noise, const std::vector<std::uint32_t>& subset) {
   const std::size_t n = subset.empty() ? view.covariance.size() : subset.size();
   KernelLocalisations out(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -62,8 +64,17 @@ KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f
     if (noise.planar) {
       const float det = c[0] * c[3] - c[1] * c[1], half = 0.5f * (c[0] + c[3]);
       const float spread = std::sqrt(std::max(0.0f, half * half - det));
-      l = {x.x(), x.y(), 0, c[3] / det, -c[1] / det, 0, c[0] / det, 0, 0,
-           1.0f / (kTwoPi * std::sqrt(det)), 1.0f / std::sqrt(std::max(half - spread, kSmallestVariance)),
+      l = {x.x(),
+           x.y(),
+           0,
+           c[3] / det,
+           -c[1] / det,
+           0,
+           c[0] / det,
+           0,
+           0,
+           1.0f / (kTwoPi * std::sqrt(det)),
+           1.0f / std::sqrt(std::max(half - spread, kSmallestVariance)),
            kCutOff * std::sqrt(half + spread)};
       continue;
     }
@@ -72,8 +83,17 @@ KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f
     // Bounds of the extreme eigenvalues are enough for the cut-off, and cheaper than the eigenvalues.
     const float largest = m.cwiseAbs().rowwise().sum().maxCoeff();
     const float sharpest = p.cwiseAbs().rowwise().sum().maxCoeff();
-    l = {x.x(), x.y(), x.z(), p(0, 0), p(0, 1), p(0, 2), p(1, 1), p(1, 2), p(2, 2),
-         1.0f / std::sqrt(kTwoPi * kTwoPi * kTwoPi * m.determinant()), std::sqrt(sharpest),
+    l = {x.x(),
+         x.y(),
+         x.z(),
+         p(0, 0),
+         p(0, 1),
+         p(0, 2),
+         p(1, 1),
+         p(1, 2),
+         p(2, 2),
+         1.0f / std::sqrt(kTwoPi * kTwoPi * kTwoPi * m.determinant()),
+         std::sqrt(sharpest),
          kCutOff * std::sqrt(largest)};
   }
   return out;

@@ -20,7 +20,8 @@ FusionData::FusionData(const Views& views, const std::vector<Eigen::Vector3f>& a
     static const std::vector<std::uint32_t> all;
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t i = which.empty() ? k : static_cast<std::size_t>(which[k]);
-      impl_->view[k] = kernel_localisations(views.view[i], axes[i], noise, subsets.empty() ? all : subsets[i]);
+      impl_->view[k] =
+          kernel_localisations(views.view[i], axes[i], noise, subsets.empty() ? all : subsets[i]);
     }
   });
 }
@@ -37,7 +38,8 @@ void FusionData::set_visibility(std::size_t view, std::vector<float> factor) {
 
 const std::vector<float>& FusionData::visibility(std::size_t view) const { return impl_->visibility[view]; }
 
-const float* view_weight(const FusionData& data, std::size_t view, const float* weight, std::vector<float>& buffer) {
+const float* view_weight(const FusionData& data, std::size_t view, const float* weight,
+                         std::vector<float>& buffer) {
   const std::vector<float>& factor = data.visibility(view);
   if (factor.empty()) return nullptr;
   buffer.resize((factor.size() + kernel::kLanes - 1) / kernel::kLanes * kernel::kLanes, 0.0f);

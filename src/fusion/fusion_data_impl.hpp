@@ -13,6 +13,7 @@ struct FusionData::Impl {
 };
 
 /// Weights of a view's centres with its visibility, or null when it has none; `buffer` holds them.
-const float* view_weight(const FusionData& data, std::size_t view, const float* weight, std::vector<float>& buffer);
+const float* view_weight(const FusionData& data, std::size_t view, const float* weight,
+                         std::vector<float>& buffer);
 
 }  // namespace polar

@@ -13,7 +13,7 @@ namespace polar {
 using KernelLocalisations = std::vector<kernel::Localisation>;
 
 /// The localisations `subset` of a view (all when empty), in that order.
-KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f& axis, const NoiseModel& noise,
-                                         const std::vector<std::uint32_t>& subset);
+KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f& axis,
+                                         const NoiseModel& noise, const std::vector<std::uint32_t>& subset);
 
 }  // namespace polar

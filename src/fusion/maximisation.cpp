@@ -15,8 +15,8 @@ namespace polar {
 
 namespace {
 
-constexpr std::size_t kMostBlocks = 64;    // partial sums held at once
-constexpr std::uint32_t kSowingStage = 11;  // key of the random stream
+constexpr std::size_t kMostBlocks = 64;      // partial sums held at once
+constexpr std::uint32_t kSowingStage = 11;   // key of the random stream
 constexpr double kPseudoLocalisations = 20;  // prior of the outlier fraction: one in twenty
 constexpr double kPseudoOutliers = 1;
 
@@ -64,9 +64,9 @@ Sums sums_of(const BlockedMixture& blocked, std::size_t centres, const FusionDat
     if (view.empty()) continue;
     std::fill(own.begin(), own.end(), 0.0f);
     inlier.resize(view.size()), density.resize(view.size());
-    mixture_kernel().accumulate(
-        frame.at(poses[i].inverse(), view_weight(data, i, blocked.weight(), buffer)), view.data(),
-        static_cast<int>(view.size()), blocked.background(), own.data(), inlier.data(), density.data(), scratch.data());
+    mixture_kernel().accumulate(frame.at(poses[i].inverse(), view_weight(data, i, blocked.weight(), buffer)),
+                                view.data(), static_cast<int>(view.size()), blocked.background(), own.data(),
+                                inlier.data(), density.data(), scratch.data());
     double mine = 0;
     for (std::size_t j = 0; j < view.size(); ++j) {
       mine += inlier[j];
@@ -91,11 +91,13 @@ int sow_again(Mixture& mixture, const std::vector<double>& strength, const Maxim
   const double mean = std::accumulate(strength.begin(), strength.end(), 0.0) / static_cast<double>(n);
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return strength[a] < strength[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return strength[a] < strength[b]; });
   KeyedRandom random(options.seed, 0, kSowingStage);
   int sown = 0;
   for (std::size_t i = 0; i < n / 2 && strength[order[i]] < options.weakest_share * mean; ++i, ++sown) {
-    const auto weak = static_cast<Eigen::Index>(order[i]), strong = static_cast<Eigen::Index>(order[n - 1 - i]);
+    const auto weak = static_cast<Eigen::Index>(order[i]),
+               strong = static_cast<Eigen::Index>(order[n - 1 - i]);
     Eigen::Vector3d away = random.direction();
     if (mixture.centre.row(2).isZero(0)) away.z() = 0;
     mixture.centre.col(weak) = mixture.centre.col(strong) + (options.reseed_distance * away).cast<float>();
@@ -122,8 +124,9 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
     const auto s = [&](std::size_t i) { return sums.total[i * centres + k]; };
     const auto col = static_cast<Eigen::Index>(k);
     // Effective number of views behind a centre, (sum m)^2 / sum m^2, as a share of all views.
-    const double support =
-        sums.share_sq[k] > 0 ? sums.share[k] * sums.share[k] / sums.share_sq[k] / static_cast<double>(data.size()) : 0;
+    const double support = sums.share_sq[k] > 0 ? sums.share[k] * sums.share[k] / sums.share_sq[k] /
+                                                      static_cast<double>(data.size())
+                                                : 0;
     strength[k] = options.support ? s(0) * support : s(0);
     const double weight = options.free_weights ? s(0) : options.support ? support * support : 1.0;
     mixture.weight[col] = static_cast<float>(weight);
@@ -132,13 +135,14 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
     a << s(1), s(2), s(3), s(2), s(4), s(5), s(3), s(5), s(6);
     if (data.planar()) a(2, 2) = 1;
     const double ridge = 1e-6 * a.trace() + 1e-12;  // a centre that nothing sees stays where it is
-    const Eigen::Vector3d b = Eigen::Vector3d(s(7), s(8), s(9)) + ridge * mixture.centre.col(col).cast<double>();
+    const Eigen::Vector3d b =
+        Eigen::Vector3d(s(7), s(8), s(9)) + ridge * mixture.centre.col(col).cast<double>();
     mixture.centre.col(col) = (a + ridge * Eigen::Matrix3d::Identity()).ldlt().solve(b).cast<float>();
   }
   mixture.weight /= static_cast<float>(std::max(total_weight, 1e-30));
-  mixture.outlier_fraction =
-      std::clamp((sums.localisations - sums.inliers + kPseudoOutliers) / (sums.localisations + kPseudoLocalisations),
-                 options.smallest_outlier_fraction, 0.95);
+  mixture.outlier_fraction = std::clamp(
+      (sums.localisations - sums.inliers + kPseudoOutliers) / (sums.localisations + kPseudoLocalisations),
+      options.smallest_outlier_fraction, 0.95);
   MaximisationReport report{sums.log_likelihood, sums.localisations, 0};
   report.reseeded = sow_again(mixture, strength, options);
   sort_into_blocks(mixture);

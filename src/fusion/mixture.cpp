@@ -32,8 +32,8 @@ void split(const Eigen::Matrix3Xf& centre, std::vector<int>& order, int begin, i
   split(centre, order, middle, end);
 }
 
-void move(const Pose& pose, const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z,
-          std::vector<float>& u, std::vector<float>& v, std::vector<float>& w) {
+void move(const Pose& pose, const std::vector<float>& x, const std::vector<float>& y,
+          const std::vector<float>& z, std::vector<float>& u, std::vector<float>& v, std::vector<float>& w) {
   const Eigen::Matrix3f r = pose.rotation.cast<float>();
   const Eigen::Vector3f t = pose.translation.cast<float>();
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -67,7 +67,8 @@ BlockedMixture::BlockedMixture(const Mixture& m)
   for (auto* a : {&block_x_, &block_y_, &block_z_}) a->assign(padded_blocks, 0.0f);
   block_radius_.assign(padded_blocks, -1.0f);
   for (int b = 0; b < blocks_; ++b) {
-    const Eigen::Index begin = Eigen::Index{b} * kernel::kLanes, count = std::min<Eigen::Index>(kernel::kLanes, m.size() - begin);
+    const Eigen::Index begin = Eigen::Index{b} * kernel::kLanes,
+                       count = std::min<Eigen::Index>(kernel::kLanes, m.size() - begin);
     const auto part = m.centre.middleCols(begin, count);
     const Eigen::Vector3f middle = 0.5f * (part.rowwise().minCoeff() + part.rowwise().maxCoeff());
     const auto at = static_cast<std::size_t>(b);
@@ -84,14 +85,19 @@ BlockedMixture::BlockedMixture(const Mixture& m)
 
 ViewFrame::ViewFrame(const BlockedMixture& m)
     : mixture_(m),
-      x_(m.x_), y_(m.y_), z_(m.z_),
-      block_x_(m.block_x_), block_y_(m.block_y_), block_z_(m.block_z_),
-      centres_{x_.data(), y_.data(), z_.data(), m.weight_.data(), m.blocks_,
+      x_(m.x_),
+      y_(m.y_),
+      z_(m.z_),
+      block_x_(m.block_x_),
+      block_y_(m.block_y_),
+      block_z_(m.block_z_),
+      centres_{x_.data(),       y_.data(),       z_.data(),       m.weight_.data(),      m.blocks_,
                block_x_.data(), block_y_.data(), block_z_.data(), m.block_radius_.data()} {}
 
 const kernel::Centres& ViewFrame::at(const Pose& view_from_template, const float* weight) {
   move(view_from_template, mixture_.x_, mixture_.y_, mixture_.z_, x_, y_, z_);
-  move(view_from_template, mixture_.block_x_, mixture_.block_y_, mixture_.block_z_, block_x_, block_y_, block_z_);
+  move(view_from_template, mixture_.block_x_, mixture_.block_y_, mixture_.block_z_, block_x_, block_y_,
+       block_z_);
   centres_.weight = weight ? weight : mixture_.weight_.data();
   return centres_;
 }

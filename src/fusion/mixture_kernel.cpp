@@ -12,9 +12,9 @@ typedef float V __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
 typedef int I __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
 typedef short S __attribute__((vector_size(2 * kLanes), aligned(2), may_alias));
 
-constexpr float kCutOff = 4.0f;         // a Gaussian beyond 4 standard deviations is nothing
-constexpr float kMaxBlocks = 4096;      // 65,536 centres
-constexpr float kRound = 12582912.0f;   // 1.5 x 2^23: adding it rounds to an integer
+constexpr float kCutOff = 4.0f;        // a Gaussian beyond 4 standard deviations is nothing
+constexpr float kMaxBlocks = 4096;     // 65,536 centres
+constexpr float kRound = 12582912.0f;  // 1.5 x 2^23: adding it rounds to an integer
 
 inline V load(const float* p) { return *reinterpret_cast<const V*>(p); }
 inline void store(float* p, V v) { *reinterpret_cast<V*>(p) = v; }
@@ -72,8 +72,8 @@ inline int blocks_in_reach(const Centres& c, const Localisation& l, int* hit) {
     const V dx = load(c.block_x + g) - l.x, dy = load(c.block_y + g) - l.y, dz = load(c.block_z + g) - l.z;
     const V radius = load(c.block_radius + g);
     const V far = radius + l.reach, sharp = radius * l.sharpest + kCutOff;
-    const I near = (dx * dx + dy * dy + dz * dz < far * far) & (quadratic_form(l, dx, dy, dz) < sharp * sharp) &
-                   (radius >= 0.0f);
+    const I near = (dx * dx + dy * dy + dz * dz < far * far) &
+                   (quadratic_form(l, dx, dy, dz) < sharp * sharp) & (radius >= 0.0f);
     for (int i = 0; i < kLanes; ++i) {
       hit[hits] = g + i;
       hits += near[i] & 1;
@@ -111,8 +111,7 @@ void moments(const Centres& c, const Localisation* l, int n, Moments* out) {
       p += e, mx += ex, my += ey, mz += ez;
       sxx += ex * x, sxy += ex * y, sxz += ex * z, syy += ey * y, syz += ey * z, szz += ez * z;
     }
-    out[j] = {sum(p),   sum(mx),  sum(my),  sum(mz),  sum(sxx),
-              sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)};
+    out[j] = {sum(p), sum(mx), sum(my), sum(mz), sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)};
   }
 }
 

@@ -16,10 +16,11 @@ constexpr double kNeighbourShare = 256.0 / 50000.0;
 constexpr int kFewestNeighbours = 10;
 constexpr int kPlanarNeighbours = 12;
 constexpr int kWorthCaching = 4000;  // rotations; smaller graphs are built in no time
-constexpr double kGroupVolume = 2 * 3.14159265358979 * 3.14159265358979;  // of SO(3), rad^3... as unit of spacing
+constexpr double kGroupVolume =
+    2 * 3.14159265358979 * 3.14159265358979;  // of SO(3), rad^3... as unit of spacing
 
-void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen::Matrix3f& rotation, float step,
-           Eigen::Vector3f& translation, float& best) {
+void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen::Matrix3f& rotation,
+           float step, Eigen::Vector3f& translation, float& best) {
   constexpr int kMostSteps = 6;
   for (int half = 0; half < 2; ++half, step *= 0.5f) {
     for (int s = 0; s < kMostSteps; ++s) {
@@ -37,10 +38,12 @@ void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen:
 
 SearchGrid search_grid(int rotations, bool planar) {
   const std::vector<Eigen::Quaternionf> q = planar ? planar_rotations(rotations) : super_fibonacci(rotations);
-  const int k = planar ? kPlanarNeighbours
-                       : std::max(kFewestNeighbours, static_cast<int>(std::lround(kNeighbourShare * rotations)));
+  const int k = planar
+                    ? kPlanarNeighbours
+                    : std::max(kFewestNeighbours, static_cast<int>(std::lround(kNeighbourShare * rotations)));
   SearchGrid grid;
-  grid.graph = rotations >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory()) : neighbour_graph(q, k);
+  grid.graph =
+      rotations >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory()) : neighbour_graph(q, k);
   for (const Eigen::Quaternionf& r : q) grid.rotation.push_back(r.toRotationMatrix());
   grid.spacing = planar ? 2 * 3.14159265358979 / rotations : std::cbrt(4 * kGroupVolume / rotations);
   return grid;
@@ -72,10 +75,12 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
   std::vector<int> order(n);
   std::iota(order.begin(), order.end(), 0);
   const std::size_t few = std::min(n, static_cast<std::size_t>(options.promising));
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(few), order.end(), [&](int a, int b) {
-    const float sa = out.log_likelihood[static_cast<std::size_t>(a)], sb = out.log_likelihood[static_cast<std::size_t>(b)];
-    return sa > sb || (sa == sb && a < b);
-  });
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(few), order.end(),
+                    [&](int a, int b) {
+                      const float sa = out.log_likelihood[static_cast<std::size_t>(a)],
+                                  sb = out.log_likelihood[static_cast<std::size_t>(b)];
+                      return sa > sb || (sa == sb && a < b);
+                    });
   for (std::size_t k = 0; k < few; ++k) {
     const auto i = static_cast<std::size_t>(order[k]);
     climb(volumes, view, grid.rotation[i] * turn, options.step, out.translation[i], out.log_likelihood[i]);
@@ -83,9 +88,11 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
   return out;
 }
 
-std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn, int most) {
+std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn,
+                          int most) {
   std::vector<float> cost(scores.log_likelihood.size());
-  std::transform(scores.log_likelihood.begin(), scores.log_likelihood.end(), cost.begin(), [](float s) { return -s; });
+  std::transform(scores.log_likelihood.begin(), scores.log_likelihood.end(), cost.begin(),
+                 [](float s) { return -s; });
   std::vector<Basin> out;
   for (const int i : local_minima(cost, grid.graph, most)) {
     const auto k = static_cast<std::size_t>(i);

@@ -17,8 +17,8 @@ struct Outcome {
   double margin = 0;
 };
 
-Outcome best_of(const std::vector<RefinedPose>& candidates, const RefinedPose& current, double escape_rad,
-                std::size_t localisations) {
+Outcome best_of(const std::vector<RefinedPose>& candidates, const RefinedPose& current,
+                const SearchAgainOptions& options, std::size_t localisations) {
   const auto top = std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
     return a.log_likelihood < b.log_likelihood;
   });
@@ -28,10 +28,12 @@ Outcome best_of(const std::vector<RefinedPose>& candidates, const RefinedPose& c
   const auto angle = [&](const RefinedPose& p) {
     return geodesic_angle(p.view_from_template.rotation, best.view_from_template.rotation);
   };
-  out.escaped = better && angle(current) >= escape_rad;  // eq. 15
+  out.escaped = angle(current) >= options.escape_rad &&  // eq. 15
+                best.log_likelihood > current.log_likelihood + options.escape_gain;
   const auto consider = [&](const RefinedPose& p) {
-    if (angle(p) < escape_rad) return;
-    out.margin = std::min(out.margin, (best.log_likelihood - p.log_likelihood) / static_cast<double>(localisations));
+    if (angle(p) < options.escape_rad) return;
+    out.margin =
+        std::min(out.margin, (best.log_likelihood - p.log_likelihood) / static_cast<double>(localisations));
   };
   for (const RefinedPose& p : candidates) consider(p);
   consider(current);
@@ -40,10 +42,10 @@ Outcome best_of(const std::vector<RefinedPose>& candidates, const RefinedPose& c
 
 }  // namespace
 
-SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vector3f>& axes, const Subsets& subset,
-                               const Mixture& mixture, const NoiseModel& noise, const SearchGrid& grid,
-                               const Eigen::Matrix3f& turn, const SearchAgainOptions& options,
-                               std::vector<Pose>& poses) {
+SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vector3f>& axes,
+                               const Subsets& subset, const Mixture& mixture, const NoiseModel& noise,
+                               const SearchGrid& grid, const Eigen::Matrix3f& turn,
+                               const SearchAgainOptions& options, std::vector<Pose>& poses) {
   const SigmaClasses classes = sigma_classes(views, axes, noise, options.sigma_classes);
   const DirectionVolumes volumes(mixture, classes, directions_for(classes, noise.planar), noise.planar);
   const BlockedMixture blocked(mixture);
@@ -54,17 +56,18 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
       few.resize(static_cast<std::size_t>(options.most_localisations));
     outcome[i].pose = poses[i];
     if (few.empty()) return;
-    const GridScores scores =
-        score_grid(volumes, search_view(views.view[i], axes[i], noise, classes, few), grid, turn, options.grid);
+    const GridScores scores = score_grid(volumes, search_view(views.view[i], axes[i], noise, classes, few),
+                                         grid, turn, options.grid);
     const KernelLocalisations localisations = kernel_localisations(views.view[i], axes[i], noise, few);
     ViewFrame frame(blocked);
     const auto refined = [&](const Pose& start) {
-      return refine_pose(frame, localisations, start.inverse(), blocked.background(), noise.planar, options.evaluations);
+      return refine_pose(frame, localisations, start.inverse(), blocked.background(), noise.planar,
+                         options.evaluations);
     };
     std::vector<RefinedPose> candidates;
     for (const Basin& basin : basins(scores, grid, turn, options.basins))
       candidates.push_back(refined(basin.template_from_view));
-    outcome[i] = best_of(candidates, refined(poses[i]), options.escape_rad, few.size());
+    outcome[i] = best_of(candidates, refined(poses[i]), options, few.size());
   });
   SearchAgainReport report;
   for (std::size_t i = 0; i < outcome.size(); ++i) {

@@ -11,12 +11,13 @@ namespace polar {
 
 namespace {
 
-constexpr int kBatch = 256;           // localisations whose moments fit the first-level cache
+constexpr int kBatch = 256;  // localisations whose moments fit the first-level cache
 constexpr double kFirstDamping = 0.1;
 constexpr double kLargestDamping = 1e6;
-constexpr double kConverged = 1e-5;   // step in radians and particle radii: a hundredth of any real accuracy
+constexpr double kConverged = 1e-5;  // step in radians and particle radii: a hundredth of any real accuracy
 
-// Score of one localisation: d ln p / d(w, v). Moments are sums over centres of density-weighted 1, mu, mu mu^T.
+// Score of one localisation: d ln p / d(w, v). Moments are sums over centres of density-weighted 1, mu, mu
+// mu^T.
 Vector6 score(const kernel::Localisation& l, const kernel::Moments& m, float background, Matrix6& majorant) {
   Eigen::Matrix3f p, s;
   p << l.pxx, l.pxy, l.pxz, l.pxy, l.pyy, l.pyz, l.pxz, l.pyz, l.pzz;
@@ -37,6 +38,19 @@ Vector6 score(const kernel::Localisation& l, const kernel::Moments& m, float bac
   return g;
 }
 
+// sum_j f(density of localisation j)
+template <typename F>
+double sum_over(const kernel::Centres& centres, const KernelLocalisations& view, F f) {
+  float density[kBatch];
+  double total = 0;
+  for (std::size_t begin = 0; begin < view.size(); begin += kBatch) {
+    const int n = static_cast<int>(std::min<std::size_t>(kBatch, view.size() - begin));
+    mixture_kernel().density(centres, view.data() + begin, n, density);
+    for (int j = 0; j < n; ++j) total += f(density[j]);
+  }
+  return total;
+}
+
 void keep_in_plane(PoseDerivatives& d) {
   for (const int i : {0, 1, 5}) {
     d.gradient[i] = 0;
@@ -52,15 +66,16 @@ void keep_in_plane(PoseDerivatives& d) {
 
 double log_likelihood(ViewFrame& frame, const KernelLocalisations& view, const Pose& pose, float background,
                       const float* weight) {
-  const kernel::Centres& centres = frame.at(pose, weight);
-  float density[kBatch];
-  double total = 0;
-  for (std::size_t begin = 0; begin < view.size(); begin += kBatch) {
-    const int n = static_cast<int>(std::min<std::size_t>(kBatch, view.size() - begin));
-    mixture_kernel().density(centres, view.data() + begin, n, density);
-    for (int j = 0; j < n; ++j) total += std::log(static_cast<double>(density[j] + background));
-  }
-  return total;
+  return sum_over(frame.at(pose, weight), view,
+                  [&](float density) { return std::log(static_cast<double>(density + background)); });
+}
+
+double outlier_share(ViewFrame& frame, const KernelLocalisations& view, const Pose& pose, float background,
+                     const float* weight) {
+  if (view.empty()) return 0;
+  return sum_over(frame.at(pose, weight), view,
+                  [&](float density) { return static_cast<double>(background / (density + background)); }) /
+         static_cast<double>(view.size());
 }
 
 PoseDerivatives pose_derivatives(ViewFrame& frame, const KernelLocalisations& view, const Pose& pose,
@@ -85,8 +100,8 @@ Pose perturbed(const Pose& pose, const Vector6& step) {
   return Pose{so3_exp(step.head<3>()), step.tail<3>()} * pose;
 }
 
-RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const Pose& start, float background,
-                        bool planar, int max_evaluations, const float* weight) {
+RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const Pose& start,
+                        float background, bool planar, int max_evaluations, const float* weight) {
   RefinedPose best{start, 0, 1};
   PoseDerivatives at = pose_derivatives(frame, view, start, background, weight);
   if (planar) keep_in_plane(at);

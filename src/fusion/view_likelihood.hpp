@@ -15,6 +15,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 double log_likelihood(ViewFrame& frame, const KernelLocalisations& view, const Pose& view_from_template,
                       float background, const float* weight = nullptr);
 
+/// Expected share of the localisations that belong to the outlier class.
+double outlier_share(ViewFrame& frame, const KernelLocalisations& view, const Pose& view_from_template,
+                     float background, const float* weight = nullptr);
+
 /// Derivatives for the perturbation exp(w) x + v applied after view_from_template (frame of the view),
 /// order (w, v).
 struct PoseDerivatives {
@@ -24,7 +28,8 @@ struct PoseDerivatives {
   Matrix6 majorant = Matrix6::Zero();  // curvature of the EM surrogate: responsibilities held fixed
 };
 PoseDerivatives pose_derivatives(ViewFrame& frame, const KernelLocalisations& view,
-                                 const Pose& view_from_template, float background, const float* weight = nullptr);
+                                 const Pose& view_from_template, float background,
+                                 const float* weight = nullptr);
 
 struct RefinedPose {
   Pose view_from_template;
@@ -33,8 +38,8 @@ struct RefinedPose {
 };
 
 /// Levenberg-Marquardt on the pose, template fixed; never returns a worse pose than it was given.
-RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const Pose& start, float background,
-                        bool planar, int max_evaluations, const float* weight = nullptr);
+RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const Pose& start,
+                        float background, bool planar, int max_evaluations, const float* weight = nullptr);
 
 /// exp(step) applied after view_from_template.
 Pose perturbed(const Pose& view_from_template, const Vector6& step);

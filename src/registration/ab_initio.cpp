@@ -6,114 +6,118 @@
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/fusion/maximisation.hpp"
+#include "template_tools.hpp"
 
 namespace polar {
 
 namespace {
 
-constexpr std::uint32_t kFirstPoseStage = 21, kFirstCentreStage = 22, kTurnStage = 23, kDrawStage = 24;
+constexpr std::uint32_t kFirstPoseStage = 21, kTurnStage = 23, kDrawStage = 24;
 constexpr int kSigmaClasses = 2;  // a wide template hardly tells uncertainties apart
-constexpr double kOutlierRadius = 1.5;  // particle radii; the ball of the uniform class
+constexpr int kPlanarRotations = 90;
+constexpr std::size_t kMostViews = 64, kMostLocalisations = 96, kMostHeldOut = 64;
+constexpr double kPi = 3.14159265358979323846;
 
 double interpolate(double first, double last, double t) { return first * std::pow(last / first, t); }
 
-NoiseModel noise_of(const StartContext& context, double width) {
-  NoiseModel noise;
-  noise.width = width;
-  noise.planar = context.views.planar;
-  return noise;
-}
-
-Mixture scattered(const StartContext& context, const std::vector<Pose>& pose, int centres, std::uint64_t number) {
-  Mixture m;
-  m.centre.resize(3, centres);
-  m.weight = Eigen::VectorXf::Constant(centres, 1.0f / static_cast<float>(centres));
-  const double r = kOutlierRadius;
-  m.outlier_density = context.views.planar ? 1 / (3.14159265 * r * r) : 3 / (4 * 3.14159265 * r * r * r);
-  KeyedRandom random(context.seed, number, kFirstCentreStage);
-  for (int k = 0; k < centres; ++k) {
-    const std::size_t v = random.below(context.which.size());
-    const auto i = static_cast<std::size_t>(context.which[v]);
-    const auto& from = context.fitted[i];
-    if (from.empty()) {
-      m.centre.col(k).setZero();
-      continue;
-    }
-    const auto j = static_cast<Eigen::Index>(from[random.below(from.size())]);
-    m.centre.col(k) = (pose[v] * context.views.view[i].points.col(j).cast<double>()).cast<float>();
-  }
-  sort_into_blocks(m);
-  return m;
+Eigen::Matrix3d random_rotation(KeyedRandom& random, bool planar) {
+  if (!planar) return random.rotation();
+  return Eigen::AngleAxisd(2 * kPi * random.uniform(), Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
 // Index drawn with probability proportional to exp(beta * score).
 std::size_t draw(const std::vector<float>& score, double beta, double u) {
-  const float best = *std::max_element(score.begin(), score.end());
+  const auto top = std::max_element(score.begin(), score.end());
   double total = 0;
-  for (const float s : score) total += std::exp(beta * static_cast<double>(s - best));
+  for (const float s : score) total += std::exp(beta * static_cast<double>(s - *top));
   double left = u * total;
   for (std::size_t i = 0; i < score.size(); ++i) {
-    left -= std::exp(beta * static_cast<double>(score[i] - best));
+    left -= std::exp(beta * static_cast<double>(score[i] - *top));
     if (left <= 0) return i;
   }
-  return static_cast<std::size_t>(std::max_element(score.begin(), score.end()) - score.begin());
+  return static_cast<std::size_t>(top - score.begin());
+}
+
+void draw_poses(const StartContext& context, const NoiseModel& noise, const SearchGrid& grid,
+                const Eigen::Matrix3f& turn, const SearchOptions& search, double beta, std::uint32_t stage,
+                Hypothesis& h) {
+  const Problem& p = context.problem;
+  const SigmaClasses classes = sigma_classes(p.views, p.axes, noise, kSigmaClasses);
+  const DirectionVolumes volumes(h.mixture, classes, directions_for(classes, p.planar()), p.planar());
+  parallel_for(context.which.size(), [&](std::size_t v) {
+    const auto i = static_cast<std::size_t>(context.which[v]);
+    if (context.fitted[i].empty()) return;
+    const SearchView view = search_view(p.views.view[i], p.axes[i], noise, classes, context.fitted[i]);
+    const GridScores scores = score_grid(volumes, view, grid, turn, search);
+    KeyedRandom random(p.seed, i, stage);
+    const std::size_t at = draw(scores.log_likelihood, beta, random.uniform());
+    h.pose[v] = {(grid.rotation[at] * turn).cast<double>(), scores.translation[at].cast<double>()};
+  });
+}
+
+Hypothesis with_template(const StartContext& context, int centres, Hypothesis h) {
+  h.mixture = scattered_mixture(context.problem, context.fitted, context.which, h.pose, centres,
+                                static_cast<std::uint64_t>(h.number));
+  return h;
 }
 
 }  // namespace
 
-double held_out_score(const StartContext& context, const Mixture& mixture, const std::vector<Pose>& pose, double width) {
-  const FusionData data(context.views, context.axes, noise_of(context, width), context.held_out, context.which);
-  const std::vector<double> mean = mean_log_likelihood(mixture, data, pose);
-  double total = 0;
-  for (const double m : mean) total += m;
-  return total / static_cast<double>(std::max<std::size_t>(1, mean.size()));
+StartContext start_context(const Problem& problem) {
+  StartContext context{problem, problem.all, first_of(problem.fitted, kMostLocalisations),
+                       first_of(problem.held_out, kMostHeldOut)};
+  if (context.which.size() > kMostViews) {  // evenly through the set: neighbours may share a field of view
+    std::vector<int> few(kMostViews);
+    for (std::size_t k = 0; k < kMostViews; ++k) few[k] = static_cast<int>(k * problem.size() / kMostViews);
+    context.which = few;
+  }
+  return context;
 }
 
-Hypothesis anneal(const StartContext& context, const AnnealingOptions& options, FirstPoses first, int number) {
-  const bool planar = context.views.planar;
-  const auto key = static_cast<std::uint64_t>(number);
+Hypothesis random_start(const StartContext& context, int centres, int number) {
   Hypothesis h;
+  h.name = "random " + std::to_string(number);
+  h.number = number;
   h.pose.resize(context.which.size());
-  KeyedRandom first_poses(context.seed, key, kFirstPoseStage);
-  if (first == FirstPoses::random)
-    for (Pose& p : h.pose)
-      p.rotation = planar ? Eigen::Matrix3d(Eigen::AngleAxisd(6.283185307 * first_poses.uniform(), Eigen::Vector3d::UnitZ()))
-                          : first_poses.rotation();
-  h.mixture = scattered(context, h.pose, options.centres, key);
-  const SearchGrid grid = search_grid(planar ? 90 : options.rotations, planar);
-  KeyedRandom turns(context.seed, key, kTurnStage);
+  KeyedRandom random(context.problem.seed, static_cast<std::uint64_t>(number), kFirstPoseStage);
+  for (Pose& pose : h.pose) pose.rotation = random_rotation(random, context.problem.planar());
+  return with_template(context, centres, std::move(h));
+}
 
+Hypothesis imaged_start(const StartContext& context, int centres, int number) {
+  Hypothesis h;
+  h.name = "imaged";
+  h.number = number;
+  h.pose.resize(context.which.size());
+  return with_template(context, centres, std::move(h));
+}
+
+void anneal(const StartContext& context, const AnnealingOptions& options, bool keep_first_poses,
+            Hypothesis& h) {
+  const Problem& p = context.problem;
+  const auto key = static_cast<std::uint64_t>(h.number);
+  const SearchGrid grid = search_grid(p.planar() ? kPlanarRotations : options.rotations, p.planar());
+  KeyedRandom turns(p.seed, key, kTurnStage);
   for (int sweep = 0; sweep < options.sweeps; ++sweep) {
     const double t = options.sweeps > 1 ? static_cast<double>(sweep) / (options.sweeps - 1) : 1.0;
-    const NoiseModel noise = noise_of(context, interpolate(options.first_width, options.last_width, t));
-    const double beta = interpolate(options.first_beta, options.last_beta, t);
-    const FusionData data(context.views, context.axes, noise, context.fitted, context.which);
-    if (sweep > 0 || first == FirstPoses::random) {
-      const SigmaClasses classes = sigma_classes(context.views, context.axes, noise, kSigmaClasses);
-      const DirectionVolumes volumes(h.mixture, classes, directions_for(classes, planar), planar);
+    NoiseModel noise;
+    noise.planar = p.planar();
+    noise.width = interpolate(options.first_width, options.last_width, t);
+    const FusionData data(p.views, p.axes, noise, context.fitted, context.which);
+    if (sweep > 0 || !keep_first_poses) {
       SearchOptions search;
-      search.translation = axis_shifts(options.shift * static_cast<float>(1.0 - 0.5 * t), planar);
-      const Eigen::Matrix3f turn =
-          planar ? Eigen::Matrix3f(Eigen::AngleAxisf(static_cast<float>(turns.uniform()), Eigen::Vector3f::UnitZ()))
-                 : Eigen::Matrix3f(turns.rotation().cast<float>());
-      parallel_for(context.which.size(), [&](std::size_t v) {
-        const auto i = static_cast<std::size_t>(context.which[v]);
-        if (context.fitted[i].empty()) return;
-        const SearchView view = search_view(context.views.view[i], context.axes[i], noise, classes, context.fitted[i]);
-        const GridScores scores = score_grid(volumes, view, grid, turn, search);
-        KeyedRandom random(context.seed, i, kDrawStage + 16 * static_cast<std::uint32_t>(sweep + 1000 * number));
-        const std::size_t at = draw(scores.log_likelihood, beta, random.uniform());
-        h.pose[v] = {(grid.rotation[at] * turn).cast<double>(), scores.translation[at].cast<double>()};
-      });
+      search.translation = axis_shifts(options.shift * static_cast<float>(1.0 - 0.5 * t), p.planar());
+      const Eigen::Matrix3f turn = random_rotation(turns, p.planar()).cast<float>();
+      draw_poses(context, noise, grid, turn, search, interpolate(options.first_beta, options.last_beta, t),
+                 kDrawStage + 16 * static_cast<std::uint32_t>(sweep + 1000 * h.number), h);
       refine_poses(h.mixture, data, h.pose, 3);
     }
     MaximisationOptions em;
-    em.seed = context.seed + key * 1000 + static_cast<std::uint64_t>(sweep);
+    em.seed = p.seed + key * 1000 + static_cast<std::uint64_t>(sweep);
     em.reseed_distance = 0.5 * noise.width;
     for (int step = 0; step < options.maximisations; ++step) maximise(h.mixture, data, h.pose, em);
   }
-  h.held_out = held_out_score(context, h.mixture, h.pose, options.last_width);
-  return h;
+  h.held_out = held_out_score(p, context.held_out, context.which, h.mixture, h.pose, options.last_width);
 }
 
 }  // namespace polar

@@ -1,28 +1,27 @@
 // A template from nothing: poses drawn from their tempered posterior over a rotation grid that is turned at
-// random in every sweep, the template refitted to the drawn poses, width and temperature annealed.
+// random in every sweep, the template refitted to the drawn poses, width and temperature annealed. The idea
+// is cryo-EM's stochastic ab-initio search (A. Punjani et al., cryoSPARC, Nature Methods 14, 2017), here on
+// point likelihoods.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "polar/core/pose.hpp"
-#include "polar/core/view.hpp"
-#include "polar/fusion/fusion_data.hpp"
 #include "polar/fusion/mixture.hpp"
 #include "polar/fusion/pose_search.hpp"
+#include "problem.hpp"
 
 namespace polar {
 
-/// What all starts share.
+/// What takes part in the starts: a few views, a few localisations of each.
 struct StartContext {
-  const Views& views;
-  const std::vector<Eigen::Vector3f>& axes;
-  std::vector<int> which;  // views that take part
-  Subsets fitted;          // per view of `views`: localisations a start may fit
-  Subsets held_out;        // per view: localisations that judge it
-  std::uint64_t seed = 1;
+  const Problem& problem;
+  std::vector<int> which;  // views
+  Subsets fitted;          // per view of the problem
+  Subsets held_out;
 };
+StartContext start_context(const Problem& problem);
 
 struct AnnealingOptions {
   int sweeps = 30;
@@ -30,24 +29,25 @@ struct AnnealingOptions {
   double first_width = 0.30, last_width = 0.10;  // of the template, in particle radii
   double first_beta = 0.05, last_beta = 1.0;     // inverse temperature of the pose posterior
   int rotations = 600;
-  float shift = 0.12f;                           // of the translations tried
-  int maximisations = 2;                         // EM steps a sweep
+  float shift = 0.12f;    // of the translations tried
+  int maximisations = 2;  // EM steps a sweep
 };
 
 /// A template and poses (template_from_view, one for each of context.which) under competition.
 struct Hypothesis {
   std::string name;
+  int number = 0;  // keys its random streams
   Mixture mixture;
   std::vector<Pose> pose;
   double held_out = 0;  // mean log density per localisation that was not fitted
 };
 
-/// Kind of the first poses: random ones, or the particles as they were imaged.
-enum class FirstPoses { random, imaged };
+/// First poses and a template scattered over the localisations under them.
+Hypothesis random_start(const StartContext& context, int centres, int number);
+Hypothesis imaged_start(const StartContext& context, int centres, int number);
 
-Hypothesis anneal(const StartContext& context, const AnnealingOptions& options, FirstPoses first, int number);
-
-/// Mean log density of the held-out localisations, poses as they are.
-double held_out_score(const StartContext& context, const Mixture& mixture, const std::vector<Pose>& pose, double width);
+/// Anneals a hypothesis in place. `keep_first_poses`: the first sweep fits the template to the poses given.
+void anneal(const StartContext& context, const AnnealingOptions& options, bool keep_first_poses,
+            Hypothesis& h);
 
 }  // namespace polar

@@ -10,7 +10,8 @@
 namespace polar {
 
 /// One block of Philox4x32-10.
-std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
+std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
+                                        std::array<std::uint32_t, 2> key);
 
 /// A stream of its own for each key; cheap to make, never shared.
 class KeyedRandom {

@@ -1,8 +1,8 @@
 // The template blurred once for each of a set of directions, so that a pose costs one look-up a localisation.
-// Where lateral sigmas agree, R^T S R = s_xy^2 I + (s_z^2 - s_xy^2) e e^T depends on the direction e = R^T z of
-// the optical axis only: every in-plane rotation and every shift reads the same volume. Localisations are put
-// into a few classes of equal uncertainty. Densities are kept as 16-bit logarithms and added as integers, so a
-// score is the same on every machine.
+// Where lateral sigmas agree, R^T S R = s_xy^2 I + (s_z^2 - s_xy^2) e e^T depends on the direction e = R^T z
+// of the optical axis only: every in-plane rotation and every shift reads the same volume. Localisations are
+// put into a few classes of equal uncertainty. Densities are kept as 16-bit logarithms and added as integers,
+// so a score is the same on every machine.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +23,8 @@ struct SigmaClasses {
 };
 
 /// At most `most` classes covering the effective uncertainties of the views.
-SigmaClasses sigma_classes(const Views& views, const std::vector<Eigen::Vector3f>& axes, const NoiseModel& noise,
-                           int most);
+SigmaClasses sigma_classes(const Views& views, const std::vector<Eigen::Vector3f>& axes,
+                           const NoiseModel& noise, int most);
 
 /// A view's localisations, sorted by class, arrays padded to 16 within each class.
 struct SearchView {
@@ -43,11 +43,13 @@ SearchView search_view(const View& view, const Eigen::Vector3f& axis, const Nois
 
 class DirectionVolumes {
  public:
-  /// Builds classes x directions volumes. `directions` 1: one volume with the mean of the three axes' variances.
+  /// Builds classes x directions volumes. `directions` 1: one volume with the mean of the three axes'
+  /// variances.
   DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions, bool planar);
 
   /// sum_j ln p(R x_j + t), nearest voxel; R is template_from_view.
-  float score(const SearchView& view, const Eigen::Matrix3f& rotation, const Eigen::Vector3f& translation) const;
+  float score(const SearchView& view, const Eigen::Matrix3f& rotation,
+              const Eigen::Vector3f& translation) const;
 
   float voxel() const { return voxel_; }
 

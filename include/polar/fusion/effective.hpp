@@ -29,6 +29,7 @@ struct AxialSigma {
 AxialSigma axial_sigma(const Symmetric3& covariance, const Eigen::Vector3f& axis);
 
 /// The effective covariance of one localisation.
-Symmetric3 effective_covariance(const Symmetric3& stated, const Eigen::Vector3f& axis, const NoiseModel& noise);
+Symmetric3 effective_covariance(const Symmetric3& stated, const Eigen::Vector3f& axis,
+                                const NoiseModel& noise);
 
 }  // namespace polar

@@ -1,5 +1,6 @@
 // One expectation-maximisation step of the template, poses fixed. Every localisation enters with its own
-// covariance, turned by its view's pose: mu_k = (sum r C^-1)^-1 sum r C^-1 x, everything in the template frame.
+// covariance, turned by its view's pose: mu_k = (sum r C^-1)^-1 sum r C^-1 x, everything in the template
+// frame.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +13,13 @@
 namespace polar {
 
 struct MaximisationOptions {
-  bool free_weights = false;     // centres may weigh differently (discrete sites); else all equal
-  bool support = false;          // weigh a centre by the share of views that support it (against strands)
-  double weakest_share = 0.05;   // a centre with less than this share of the mean is sown anew beside a strong one
+  bool free_weights = false;  // centres may weigh differently (discrete sites); else all equal
+  bool support = false;       // weigh a centre by the share of views that support it (against strands)
+  double weakest_share =
+      0.05;  // a centre with less than this share of the mean is sown anew beside a strong one
   double reseed_distance = 0.05;  // where, in template units
   double smallest_outlier_fraction = 0.002;
-  std::uint64_t seed = 0;        // of the sowing
+  std::uint64_t seed = 0;  // of the sowing
 };
 
 struct MaximisationReport {
@@ -26,9 +28,9 @@ struct MaximisationReport {
   int reseeded = 0;
 };
 
-/// Poses are template_from_view, one a view of `data`. Expects and leaves the centres sorted into blocks; their
-/// order changes, so visibilities set on `data` must be set anew.
-MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std::vector<Pose>& template_from_view,
-                            const MaximisationOptions& options);
+/// Poses are template_from_view, one a view of `data`. Expects and leaves the centres sorted into blocks;
+/// their order changes, so visibilities set on `data` must be set anew.
+MaximisationReport maximise(Mixture& mixture, const FusionData& data,
+                            const std::vector<Pose>& template_from_view, const MaximisationOptions& options);
 
 }  // namespace polar

@@ -23,8 +23,8 @@ SearchGrid search_grid(int rotations, bool planar);
 
 struct SearchOptions {
   std::vector<Eigen::Vector3f> translation = {Eigen::Vector3f::Zero()};  // tried with every rotation
-  int promising = 400;    // best rotations whose translation is then improved
-  float step = 0;         // of that improvement, halved once; 0: none
+  int promising = 400;  // best rotations whose translation is then improved
+  float step = 0;       // of that improvement, halved once; 0: none
 };
 
 /// For every rotation of the grid, turned by `turn` first: the best score and its translation.
@@ -41,7 +41,8 @@ struct Basin {
 };
 
 /// Local optima over the grid, best first.
-std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn, int most);
+std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn,
+                          int most);
 
 /// 0 and +-shift along the axes (7), planar without z (5).
 std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar);

@@ -1,5 +1,6 @@
 // Looks for a better pose of every view under a fixed template: FLAMES on the blurred volumes, then the best
-// basins refined on the exact mixture. The paper's multistart with its update u and escape test s (eq. 14, 15).
+// basins refined on the exact mixture. The paper's multistart with its update u and escape test s (eq. 14,
+// 15).
 #pragma once
 
 #include <Eigen/Core>
@@ -13,24 +14,25 @@
 namespace polar {
 
 struct SearchAgainOptions {
-  int basins = 8;                 // M of the paper
-  int evaluations = 8;            // of the refinement of a basin
-  int most_localisations = 160;   // of a view that the search looks at
+  int basins = 8;                // M of the paper
+  int evaluations = 8;           // of the refinement of a basin
+  int most_localisations = 160;  // of a view that the search looks at
   int sigma_classes = 3;
   double escape_rad = 0.2617993877991494;  // T_R = 15 degrees
+  double escape_gain = 2;  // log likelihood that a move must gain to count: less is a symmetric twin or a tie
   SearchOptions grid;
 };
 
 struct SearchAgainReport {
-  int escaped = 0;                // views that moved farther than T_R to a better likelihood
-  std::vector<double> margin;     // per view: best minus second-best basin, mean log density per localisation
+  int escaped = 0;             // views that moved farther than T_R to a better likelihood
+  std::vector<double> margin;  // per view: best minus second-best basin, mean log density per localisation
 };
 
-/// Poses are template_from_view of all views, improved in place. `subset`: localisations of each view that the
-/// search looks at, in an order whose first ones are a fair sample.
-SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vector3f>& axes, const Subsets& subset,
-                               const Mixture& mixture, const NoiseModel& noise, const SearchGrid& grid,
-                               const Eigen::Matrix3f& turn, const SearchAgainOptions& options,
-                               std::vector<Pose>& template_from_view);
+/// Poses are template_from_view of all views, improved in place. `subset`: localisations of each view that
+/// the search looks at, in an order whose first ones are a fair sample.
+SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vector3f>& axes,
+                               const Subsets& subset, const Mixture& mixture, const NoiseModel& noise,
+                               const SearchGrid& grid, const Eigen::Matrix3f& turn,
+                               const SearchAgainOptions& options, std::vector<Pose>& template_from_view);
 
 }  // namespace polar

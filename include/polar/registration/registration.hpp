@@ -16,8 +16,8 @@ struct RegisteredView {
   /// Covariance of (rotation, translation): left perturbation x -> exp(w) x + v in the template frame,
   /// rad^2, rad x length, length^2.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  double log_likelihood = 0;  // mean natural log density per localisation (length^-3, planar length^-2)
-  double margin = 0;          // log_likelihood minus that of the second-best basin found, >= 0
+  double log_likelihood = 0;    // mean natural log density per localisation (length^-3, planar length^-2)
+  double margin = 0;            // log_likelihood minus that of the second-best basin found, >= 0
   double outlier_fraction = 0;  // expected share of localisations that the template does not explain
   double visibility = 1;        // estimated share of the template that the view shows
   int n_used = 0;
@@ -37,8 +37,8 @@ struct FusedTemplate {
 /// sigma_eff^2 = a^2 sigma^2 + b^2, fitted by likelihood; far from a = 1, b = label size means that the
 /// table's uncertainties do not describe its noise.
 struct Calibration {
-  double lateral_factor = 1, axial_factor = 1;        // a
-  double lateral_extra = 0, axial_extra = 0;          // b, length
+  double lateral_factor = 1, axial_factor = 1;  // a
+  double lateral_extra = 0, axial_extra = 0;    // b, length
 };
 
 struct StartReport {

@@ -1,0 +1,32 @@
+// The last word on each pose: non-linear least squares with Ceres on the template's responsibilities, and the
+// pose's covariance from the curvature of the exact likelihood.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "polar/core/pose.hpp"
+#include "polar/fusion/fusion_data.hpp"
+#include "polar/fusion/mixture.hpp"
+
+namespace polar {
+
+struct PolishedPose {
+  Pose template_from_view;
+  /// Inverse of the observed information, for x -> exp(w) x + v applied after template_from_view, order (w,
+  /// v).
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  bool information_positive =
+      false;                  // false: flat or saddle, the covariance is the pseudo-inverse of the Fisher sum
+  double log_likelihood = 0;  // mean per localisation
+  double outlier_fraction = 0;  // expected share that the template does not explain
+  bool improved = false;        // by the least squares, over the pose given
+};
+
+/// Poses template_from_view, one a view of `data`, template fixed. Minimises with Ceres, for responsibilities
+/// r_jk renewed three times, 1/2 sum_jk r_jk |C_j^(-1/2) (x_j - R^T (mu_k - t))|^2; the outlier class makes
+/// it robust.
+std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
+                                 const std::vector<Pose>& template_from_view);
+
+}  // namespace polar

@@ -1,0 +1,148 @@
+#include "polar/fusion/calibration.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace polar {
+
+namespace {
+
+constexpr double kPriorWidth =
+    0.1;  // of ln a; decides only where sigma hardly varies, a few localisations outweigh it
+constexpr double kSmallestExtra = 1e-3;  // of b, particle radii
+constexpr double kLargestExtra = 0.5;
+constexpr int kMostEvaluations = 90;
+constexpr double kTolerance = 1e-4;  // mean log density: far below any decision
+constexpr std::size_t kMostLocalisations = 20000;
+constexpr float kAxisRatio = 1.1f;  // axial over lateral
+
+using Parameters = std::vector<double>;  // ln a, ln b lateral [, axial]
+
+NoiseModel model(const Parameters& p, const NoiseModel& like) {
+  NoiseModel noise = like;
+  const auto extra = [](double v) { return std::clamp(std::exp(v), kSmallestExtra, kLargestExtra); };
+  noise.width = 0;
+  noise.lateral_factor = std::exp(p[0]), noise.lateral_extra = extra(p[1]);
+  noise.axial_factor = p.size() > 2 ? std::exp(p[2]) : noise.lateral_factor;
+  noise.axial_extra = p.size() > 2 ? extra(p[3]) : noise.lateral_extra;
+  return noise;
+}
+
+// J. A. Nelder, R. Mead, A simplex method for function minimization, The Computer Journal 7, 1965: few
+// parameters, a cost with no cheap derivative.
+template <typename Cost>
+Parameters minimise(const Parameters& start, double step, Cost cost) {
+  const std::size_t n = start.size();
+  std::vector<Parameters> vertex(n + 1, start);
+  std::vector<double> value(n + 1);
+  for (std::size_t i = 0; i < n; ++i) vertex[i + 1][i] += step;
+  int evaluations = 0;
+  const auto at = [&](const Parameters& p) { return ++evaluations, cost(p); };
+  for (std::size_t i = 0; i <= n; ++i) value[i] = at(vertex[i]);
+  std::vector<std::size_t> order(n + 1);
+  while (evaluations < kMostEvaluations) {
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] < value[b]; });
+    const std::size_t best = order[0], worst = order[n], second = order[n - 1];
+    if (value[worst] - value[best] < kTolerance) break;
+    Parameters middle(n, 0.0);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t d = 0; d < n; ++d) middle[d] += vertex[order[i]][d] / static_cast<double>(n);
+    const auto towards = [&](double t) {
+      Parameters p(n);
+      for (std::size_t d = 0; d < n; ++d) p[d] = middle[d] + t * (vertex[worst][d] - middle[d]);
+      return p;
+    };
+    const Parameters reflected = towards(-1);
+    const double r = at(reflected);
+    if (r < value[best]) {
+      const Parameters expanded = towards(-2);
+      const double e = at(expanded);
+      vertex[worst] = e < r ? expanded : reflected;
+      value[worst] = std::min(e, r);
+    } else if (r < value[second]) {
+      vertex[worst] = reflected, value[worst] = r;
+    } else {
+      const Parameters inside = towards(r < value[worst] ? -0.5 : 0.5);
+      const double c = at(inside);
+      if (c < std::min(r, value[worst])) {
+        vertex[worst] = inside, value[worst] = c;
+        continue;
+      }
+      for (std::size_t i = 1; i <= n; ++i) {
+        for (std::size_t d = 0; d < n; ++d)
+          vertex[order[i]][d] = 0.5 * (vertex[order[i]][d] + vertex[best][d]);
+        value[order[i]] = at(vertex[order[i]]);
+      }
+    }
+  }
+  return vertex[static_cast<std::size_t>(std::min_element(value.begin(), value.end()) - value.begin())];
+}
+
+Subsets at_most(const Subsets& held_out, std::size_t most) {
+  std::size_t total = 0;
+  for (const auto& s : held_out) total += s.size();
+  Subsets few = held_out;
+  if (total > most)
+    for (auto& s : few) s.resize((s.size() * most + total - 1) / total);
+  return few;
+}
+
+}  // namespace
+
+bool has_axis(const Views& views, const std::vector<Eigen::Vector3f>& axes) {
+  if (views.planar) return false;
+  std::vector<float> ratio;
+  for (std::size_t i = 0; i < views.view.size(); ++i) {
+    if (views.view[i].covariance.empty()) continue;
+    const AxialSigma s = axial_sigma(views.view[i].covariance.front(), axes[i]);
+    if (s.lateral > 0) ratio.push_back(std::max(s.axial / s.lateral, s.lateral / std::max(s.axial, 1e-9f)));
+  }
+  if (ratio.empty()) return false;
+  std::nth_element(ratio.begin(), ratio.begin() + static_cast<std::ptrdiff_t>(ratio.size() / 2), ratio.end());
+  return ratio[ratio.size() / 2] > kAxisRatio;
+}
+
+CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3f>& axes,
+                            const Subsets& held_out, const Mixture& mixture, const std::vector<Pose>& poses,
+                            const NoiseModel& start) {
+  const Subsets few = at_most(held_out, kMostLocalisations);
+  double localisations = 0;
+  std::vector<int> which;
+  std::vector<Pose> pose;
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    if (few[i].empty()) continue;
+    localisations += static_cast<double>(few[i].size());
+    which.push_back(static_cast<int>(i));
+    pose.push_back(poses[i]);
+  }
+  CalibrationReport report{start, 0};
+  if (which.empty()) return report;
+  const auto mean = [&](const NoiseModel& noise) {
+    const FusionData data(views, axes, noise, few, which);
+    const std::vector<double> per_view = mean_log_likelihood(mixture, data, pose);
+    double total = 0;
+    for (std::size_t k = 0; k < which.size(); ++k)
+      total += per_view[k] * static_cast<double>(few[static_cast<std::size_t>(which[k])].size());
+    return total / localisations;
+  };
+  const auto cost = [&](const Parameters& p) {
+    double prior = 0;
+    for (std::size_t i = 0; i < p.size(); i += 2) prior += 0.5 * (p[i] / kPriorWidth) * (p[i] / kPriorWidth);
+    return prior / localisations - mean(model(p, start));
+  };
+  const auto first = [&](double factor, double extra, Parameters& p) {
+    p.push_back(std::log(factor));
+    p.push_back(std::log(std::max(std::hypot(extra, start.width), 2 * kSmallestExtra)));
+  };
+  Parameters p;
+  first(start.lateral_factor, start.lateral_extra, p);
+  if (has_axis(views, axes)) first(start.axial_factor, start.axial_extra, p);
+  report.noise = model(minimise(p, -0.4, cost), start);
+  report.log_likelihood = mean(report.noise);
+  return report;
+}
+
+}  // namespace polar

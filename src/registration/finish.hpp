@@ -1,0 +1,21 @@
+// From rounds to results: calibrated uncertainties, the number of centres, the last search, the polish.
+#pragma once
+
+#include "polar/core/progress.hpp"
+#include "polar/registration/registration.hpp"
+#include "rounds.hpp"
+
+namespace polar {
+
+/// Fits noise model and template in turn, everything judged by held-out localisations; returns the noise
+/// model.
+NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noise, RoundState& state);
+
+/// Fewer centres where held-out localisations are explained as well: a few sites instead of a surface.
+NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state);
+
+/// Poses, covariances, scores and verdicts of all views into `registration`.
+void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& state,
+                Registration& registration);
+
+}  // namespace polar

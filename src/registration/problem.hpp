@@ -1,0 +1,32 @@
+// What every stage of a registration shares: the views, the axes of their uncertainties, and which
+// localisations are fitted, which judge.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "polar/core/view.hpp"
+#include "polar/fusion/fusion_data.hpp"
+
+namespace polar {
+
+struct Problem {
+  const Views& views;
+  std::vector<Eigen::Vector3f> axes;
+  Subsets shuffled;  // all localisations of each view, in a keyed random order: any prefix is a fair sample
+  Subsets fitted;    // the share the template is fitted to while anything is still chosen by likelihood
+  Subsets held_out;  // the rest: judges starts, calibration and the number of centres
+  std::vector<int> all;
+  std::uint64_t seed = 1;
+  double localisations = 0;
+
+  bool planar() const { return views.planar; }
+  std::size_t size() const { return views.view.size(); }
+};
+
+Problem make_problem(const Views& views, std::uint64_t seed);
+
+/// The first `most` of every list.
+Subsets first_of(const Subsets& subsets, std::size_t most);
+
+}  // namespace polar

@@ -1,0 +1,110 @@
+#include "polar/registration/register.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "finish.hpp"
+#include "starts.hpp"
+
+namespace polar {
+
+namespace {
+
+constexpr int kExhaustiveRotations = 50000;  // the paper's L
+constexpr int kExhaustivePlanar = 720;
+constexpr double kLargestFactor = 1.5;  // of a, either way, before a warning
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double s = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return s;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void warn_about_calibration(const Calibration& c, std::vector<std::string>& warnings) {
+  const auto far = [](double a) { return a > kLargestFactor || a < 1 / kLargestFactor; };
+  const auto warn = [&](const char* axis, double a) {
+    if (far(a))
+      warnings.push_back(std::string("the ") + axis +
+                         " uncertainties of the table do not describe its noise: the data want them times " +
+                         std::to_string(a).substr(0, 4) + "; the calibrated ones were used");
+  };
+  warn("lateral", c.lateral_factor);
+  if (c.axial_factor != c.lateral_factor) warn("axial", c.axial_factor);
+}
+
+}  // namespace
+
+std::vector<std::string> violations(const RegistrationOptions& options) {
+  std::vector<std::string> faults;
+  if (options.starts.empty())
+    faults.push_back("registration.starts: at least one of random, imaged is needed");
+  for (const std::string& s : options.starts)
+    if (s != "random" && s != "imaged")
+      faults.push_back("registration.starts: '" + s + "' is none of random, imaged");
+  if (std::set<std::string>(options.starts.begin(), options.starts.end()).size() != options.starts.size())
+    faults.push_back("registration.starts: a start is named twice");
+  if (options.search != "fast" && options.search != "exhaustive")
+    faults.push_back("registration.search: '" + options.search + "' is neither fast nor exhaustive");
+  return faults;
+}
+
+Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {
+  Registration out;
+  out.view.resize(views.view.size());
+  Stopwatch watch;
+  const auto timed = [&](const char* stage) { out.timings.push_back({stage, watch.lap()}); };
+  const Problem problem = make_problem(views, options.seed);
+  RoundOptions rounds;
+  if (options.search == "exhaustive") {
+    rounds.rotations = kExhaustiveRotations;
+    rounds.planar_rotations = kExhaustivePlanar;
+  }
+  const SearchGrid grid =
+      search_grid(views.planar ? rounds.planar_rotations : rounds.rotations, views.planar);
+  timed("grid");
+
+  StartsOutcome starts = compete(problem, options.starts, progress);
+  out.starts = starts.report;
+  timed("starts");
+  if (progress.cancelled() || starts.winner.pose.empty()) {
+    out.stopped_because = "cancelled";
+    return out;
+  }
+
+  RoundState state;
+  state.mixture = starts.winner.mixture;
+  state.pose.resize(problem.size());
+  for (std::size_t k = 0; k < starts.which.size(); ++k)
+    state.pose[static_cast<std::size_t>(starts.which[k])] = starts.winner.pose[k];
+  run_rounds(problem, grid, rounds, progress, state);
+  timed("rounds");
+
+  NoiseModel noise;
+  noise.planar = views.planar;
+  noise.width = rounds.last_width;
+  noise = calibrate_and_fuse(problem, 3, noise, state);
+  timed("calibration");
+  noise = choose_centres(problem, noise, state);
+  timed("centres");
+  search_all(problem, grid, rounds, noise, state);
+  noise = calibrate_and_fuse(problem, 1, noise, state);
+  timed("last search");
+  polish_all(problem, noise, state, out);
+  timed("polish");
+  out.rounds = state.rounds;
+  out.converged = state.escaped <= rounds.settled * static_cast<double>(problem.size());
+  out.stopped_because = std::to_string(state.escaped) + " of " + std::to_string(problem.size()) +
+                        " views moved by more than 15 degrees in the last search";
+  warn_about_calibration(out.calibration, out.warnings);
+  return out;
+}
+
+}  // namespace polar

@@ -1,0 +1,46 @@
+// Search, fuse, refine, narrower each round, until no view moves (paper Algorithm 1 with the likelihood in
+// place of the latent loss).
+#pragma once
+
+#include <vector>
+
+#include "polar/core/progress.hpp"
+#include "polar/fusion/pose_search.hpp"
+#include "problem.hpp"
+
+namespace polar {
+
+struct RoundOptions {
+  int rotations = 2304;  // of the search grid; exhaustive: 50,000
+  int planar_rotations = 180;
+  int basins = 8;  // M
+  int search_localisations = 128;
+  double first_width = 0.09, last_width = 0.03, narrowing = 0.72;
+  double search_width = 0.05;  // the search looks at the template no sharper than this
+  float shift = 0.10f, step = 0.06f;
+  int promising = 200;
+  int sweeps = 4;  // of EM and pose steps after each search
+  int most_searches = 4;
+  double settled = 0.01;  // share of views that may still move when searching ends
+};
+
+struct RoundState {
+  Mixture mixture;
+  std::vector<Pose> pose;      // template_from_view, all views
+  std::vector<double> margin;  // of the last search
+  int rounds = 0;
+  int escaped = 0;  // in the last search
+};
+
+/// Number of centres for so many localisations: enough for a surface, few enough to be determined.
+int centres_for(const Problem& problem);
+
+/// One FLAMES over all views under the present template.
+void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptions& options, NoiseModel noise,
+                RoundState& state);
+
+/// From a template and poses of some views (identity for the others) to poses of all.
+void run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,
+                Progress& progress, RoundState& state);
+
+}  // namespace polar

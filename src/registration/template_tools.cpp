@@ -1,0 +1,58 @@
+#include "template_tools.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "polar/core/rng.hpp"
+
+namespace polar {
+
+namespace {
+constexpr std::uint32_t kFirstCentreStage = 22;
+constexpr double kOutlierRadius = 1.5;  // particle radii: the ball (disc) of the uniform class
+constexpr double kPi = 3.14159265358979323846;
+}  // namespace
+
+Mixture scattered_mixture(const Problem& problem, const Subsets& subsets, const std::vector<int>& which,
+                          const std::vector<Pose>& pose, int centres, std::uint64_t key) {
+  Mixture m;
+  m.centre = Eigen::Matrix3Xf::Zero(3, centres);
+  m.weight = Eigen::VectorXf::Constant(centres, 1.0f / static_cast<float>(centres));
+  const double r = kOutlierRadius;
+  m.outlier_density = problem.planar() ? 1 / (kPi * r * r) : 3 / (4 * kPi * r * r * r);
+  KeyedRandom random(problem.seed, key, kFirstCentreStage);
+  for (int k = 0; k < centres; ++k) {
+    const std::size_t v = random.below(which.size());
+    const auto i = static_cast<std::size_t>(which[v]);
+    if (subsets[i].empty()) continue;
+    const auto j = static_cast<Eigen::Index>(subsets[i][random.below(subsets[i].size())]);
+    m.centre.col(k) = (pose[v] * problem.views.view[i].points.col(j).cast<double>()).cast<float>();
+  }
+  sort_into_blocks(m);
+  return m;
+}
+
+double held_out_score(const Problem& problem, const Subsets& held_out, const std::vector<int>& which,
+                      const Mixture& mixture, const std::vector<Pose>& pose, double width) {
+  NoiseModel noise;
+  noise.planar = problem.planar();
+  noise.width = width;
+  const FusionData data(problem.views, problem.axes, noise, held_out, which);
+  const std::vector<double> mean = mean_log_likelihood(mixture, data, pose);
+  return std::accumulate(mean.begin(), mean.end(), 0.0) /
+         static_cast<double>(std::max<std::size_t>(1, mean.size()));
+}
+
+double held_out_score(const Problem& problem, const Mixture& mixture, const std::vector<Pose>& pose,
+                      const NoiseModel& noise) {
+  const FusionData data(problem.views, problem.axes, noise, problem.held_out, problem.all);
+  const std::vector<double> mean = mean_log_likelihood(mixture, data, pose);
+  double total = 0, count = 0;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    const auto n = static_cast<double>(problem.held_out[i].size());
+    total += n * mean[i], count += n;
+  }
+  return total / std::max(1.0, count);
+}
+
+}  // namespace polar

@@ -1,0 +1,26 @@
+// Small pieces that several stages need: a first template under given poses, its score on kept-out
+// localisations.
+#pragma once
+
+#include <vector>
+
+#include "polar/core/pose.hpp"
+#include "polar/fusion/mixture.hpp"
+#include "problem.hpp"
+
+namespace polar {
+
+/// `centres` centres of equal weight at localisations drawn from `subsets` of the views `which`, moved by
+/// `pose` (one for each of `which`).
+Mixture scattered_mixture(const Problem& problem, const Subsets& subsets, const std::vector<int>& which,
+                          const std::vector<Pose>& pose, int centres, std::uint64_t key);
+
+/// Mean over views of the mean log density of `held_out`, template width `width`.
+double held_out_score(const Problem& problem, const Subsets& held_out, const std::vector<int>& which,
+                      const Mixture& mixture, const std::vector<Pose>& pose, double width);
+
+/// Mean over localisations of the log density of `held_out` under a noise model, all views.
+double held_out_score(const Problem& problem, const Mixture& mixture, const std::vector<Pose>& pose,
+                      const NoiseModel& noise);
+
+}  // namespace polar
