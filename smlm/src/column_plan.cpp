@@ -190,6 +190,9 @@ class Planner {
   }
 
   double length_factor(Quantity q, const Candidate& candidate) {
+    if (columns_[candidate.column].unit_nm > 0 && candidate.unit == columns_[candidate.column].unit) {
+      return columns_[candidate.column].unit_nm;
+    }
     std::string text = candidate.unit;
     for (const std::string_view square : {"^2", "\xC2\xB2"}) {
       const auto at = text.find(square);

@@ -18,7 +18,8 @@ struct SourceColumn {
   std::string unit = {};                  // as in the file; empty: unknown
   std::optional<Quantity> quantity = {};  // decided by the reader; `other` keeps it out of the running
   Spread spread = Spread::standard_deviation;
-  bool text = false;  // holds words, so it can only be a particle name or an extra
+  double unit_nm = 0;  // nm per unit where the reader knows it exactly; 0: `unit` says
+  bool text = false;   // holds words, so it can only be a particle name or an extra
 };
 
 /// Where a quantity comes from: value_nm = factor * value (factor^2 for variances and covariances).

@@ -24,7 +24,10 @@ std::vector<std::string> violations(const ReadOptions& options) {
   std::vector<std::string> formats{"auto"};
   for (const TableReader& reader : table_readers()) formats.emplace_back(reader.name);
   check_word(faults, "format", options.format, formats);
-  check_word(faults, "particles", options.particles, {"column", "one_per_file"});
+  check_word(faults, "particles", options.particles, {"column", "one_per_file", "picked"});
+  if (options.particles == "picked" && !(options.pick.radius_nm > 0 && options.pick.radius_nm <= 1e9)) {
+    faults.emplace_back("pick.radius_nm: must be positive where particles are picked");
+  }
   check_word(faults, "lpz_unit", options.lpz_unit, {"nm", "px"});
   check_word(faults, "sigma_kind", options.sigma_kind, {"", "std", "variance"});
   if (!options.unit.empty() && !units::parse_length(options.unit)) {

@@ -7,9 +7,12 @@
 #include <cstring>
 
 #include "concatenate.hpp"
+#include "mat_v5.hpp"
 #include "readers/readers.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
+#include "smlm/inspect.hpp"
+#include "smlm/pick.hpp"
 
 namespace smlm {
 namespace {
@@ -29,6 +32,11 @@ void refuse_known(const FileHead& head) {
   const auto refuse = [&](const std::string& what, const std::string& remedy) {
     throw Error(Fault::input, head.path, what, remedy);
   };
+  if (head.hdf5 && h5::File::open(head.path).exists("/paraview/dataframe")) {
+    refuse("is a pyMINFLUX project", "export the data as .npy from pyMINFLUX");
+  }
+  if (is_mat_v5(head.bytes))
+    refuse("is a MATLAB file without a known table", "save a cell array 'particles', or export CSV");
   if (starts("#ASDF")) refuse("is an ASDF file", "export the table as CSV from Locan");
   if (starts("PK\x03\x04")) refuse("is a ZIP archive that is not an .smlm file", "unpack it first");
   if (starts("\x80\x02") || starts("\x80\x03") || starts("\x80\x04") || starts("\x80\x05")) {
@@ -40,7 +48,11 @@ void refuse_known(const FileHead& head) {
 }  // namespace
 
 const std::vector<TableReader>& table_readers() {
-  static const std::vector<TableReader> all{readers::picasso, readers::thunderstorm, readers::csv};
+  static const std::vector<TableReader> all{readers::picasso, readers::picasso_pandas, readers::smap,
+                                            readers::decode,  readers::particle_cells, readers::smlm_zip,
+                                            readers::minflux, readers::minflux_mat,    readers::rapidstorm,
+                                            readers::elyra,   readers::nstorm,         readers::oni,
+                                            readers::zola,    readers::thunderstorm,   readers::csv};
   return all;
 }
 
@@ -91,14 +103,26 @@ LocalisationTable read_tables(const std::vector<std::string>& files, const ReadO
   const auto faults = violations(options);
   if (!faults.empty()) throw Error(Fault::usage, "input." + faults.front(), "");
   if (files.empty()) throw Error(Fault::usage, "input.files", "names no file", "name at least one");
+  const bool picked = options.particles == "picked";
+  if (picked && !options.pick.centres.empty() && files.size() > 1) {
+    throw Error(Fault::usage, "input.pick.centres", "is one list for several fields of view",
+                "read one file at a time");
+  }
   Concatenation all(files, options);
   for (const std::string& file : files) {
     const TableReader& reader = find_reader(read_head(file), options);
     LocalisationTable table = reader.read(file, options);
     table.formats.assign(1, std::string(reader.name));
+    if (picked) {
+      const auto centres = options.pick.centres.empty() ? find_centres(table, options.pick)
+                                                        : read_centres(options.pick.centres);
+      pick_particles(table, centres, options.pick.radius_nm);
+    }
     all.append(std::move(table));
   }
-  return all.finish();
+  LocalisationTable table = all.finish();
+  for (std::string& warning : implausibilities(table)) table.warnings.push_back(std::move(warning));
+  return table;
 }
 
 }  // namespace smlm

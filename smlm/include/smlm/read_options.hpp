@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "smlm/pick.hpp"
+
 namespace smlm {
 
 /// Where a quantity stands in a table whose header says nothing, or says it wrongly.
@@ -29,8 +31,11 @@ struct ReadOptions {
   std::string sigma_kind;
   /// Unit of Picasso's lpz, which its versions disagree on: nm | px.
   std::string lpz_unit = "nm";
-  /// column: a column names the particle of each row; one_per_file: a file is a particle.
+  /// column: a column names the particle of each row; one_per_file: a file is a particle; picked: particles
+  /// are picked out of each file's field of view.
   std::string particles = "column";
+  /// How, where particles are picked.
+  PickOptions pick;
   /// The particle id that means "none"; empty: -1, and 0 in SMAP's sitenumbers.
   std::string unassigned_particle;
   /// Leave out rows whose position or uncertainty cannot be used, and count them; else they are an error.

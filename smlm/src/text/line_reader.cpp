@@ -12,8 +12,8 @@ constexpr std::size_t buffer_bytes = std::size_t{1} << 20;  // also the longest 
 
 }  // namespace
 
-LineReader::LineReader(const std::string& path)
-    : path_(path), file_(gzopen(path.c_str(), "rb")), buffer_(buffer_bytes) {
+LineReader::LineReader(const std::string& path, Nul nul)
+    : path_(path), nul_(nul), file_(gzopen(path.c_str(), "rb")), buffer_(buffer_bytes) {
   if (!file_) throw Error(Fault::io, path, std::strerror(errno), "check the name and the permissions");
   gzbuffer(file_.get(), 1 << 18);
 }
@@ -36,16 +36,22 @@ bool LineReader::refill() {
                 "copy the file again");
   }
   exhausted_ = read == 0;
-  if (std::memchr(buffer_.data() + end_, '\0', static_cast<std::size_t>(read)) != nullptr) {
-    throw Error(Fault::input, path_, "holds NUL bytes, so it is not a table of text", "check its format");
+  const char* fresh = buffer_.data() + end_;
+  auto kept = static_cast<std::size_t>(read);
+  if (const void* found = std::memchr(fresh, '\0', kept); found != nullptr) {
+    if (nul_ == Nul::error) {
+      throw Error(Fault::input, path_, "holds NUL bytes, so it is not a table of text", "check its format");
+    }
+    kept = static_cast<std::size_t>(static_cast<const char*>(found) - fresh);
+    exhausted_ = true;
   }
-  end_ += static_cast<std::size_t>(read);
-  if (line_end_ == 0 && read > 0) {
+  end_ += kept;
+  if (line_end_ == 0 && kept > 0) {
     const bool has_lf = std::memchr(buffer_.data(), '\n', end_) != nullptr;
     const bool has_cr = std::memchr(buffer_.data(), '\r', end_) != nullptr;
     line_end_ = has_cr && !has_lf ? '\r' : '\n';
   }
-  return read > 0;
+  return kept > 0;
 }
 
 std::string_view LineReader::take(std::size_t length, std::size_t end_length) {

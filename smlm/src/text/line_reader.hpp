@@ -11,10 +11,13 @@
 
 namespace smlm {
 
+/// What a NUL byte means: that this is no text, or (Zeiss writes one before its footer) the end.
+enum class Nul { error, end };
+
 class LineReader {
  public:
   /// Throws Error(io) when the file cannot be opened.
-  explicit LineReader(const std::string& path);
+  explicit LineReader(const std::string& path, Nul nul = Nul::error);
 
   /// The next line without its end (LF, CRLF, or CR where a file has no LF), valid until the next call.
   /// False at the end. Throws Error(input) for a NUL byte, a line over 1 MiB or a damaged gzip stream.
@@ -31,6 +34,7 @@ class LineReader {
     void operator()(gzFile_s* file) const { gzclose(file); }
   };
   std::string path_;
+  Nul nul_;
   std::unique_ptr<gzFile_s, Close> file_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;  // the unread part of the buffer

@@ -65,8 +65,12 @@ std::string describe(std::string_view field) {
 
 class RowParser {
  public:
-  RowParser(const std::string& path, char delimiter, TableBuilder& builder)
-      : path_(path), delimiter_(delimiter), builder_(builder), fields_(builder.columns().size()) {
+  RowParser(const std::string& path, char delimiter, bool ignore_further_fields, TableBuilder& builder)
+      : path_(path),
+        delimiter_(delimiter),
+        ignore_further_fields_(ignore_further_fields),
+        builder_(builder),
+        fields_(builder.columns().size()) {
     required_.assign(fields_, false);
     for (const auto& planned : builder.plan().used) {
       if (planned) required_[planned->column] = true;
@@ -85,7 +89,8 @@ class RowParser {
     for (std::size_t i = 0; i < fields_; ++i) {
       std::string_view field;
       const bool more = next_field(line, delimiter_, field);
-      if (more == (i + 1 == fields_)) fail_count(whole, number);
+      const bool last = i + 1 == fields_;
+      if (last ? more && !ignore_further_fields_ : !more) fail_count(whole, number);
       double& value = block_.columns[i][row];
       if (builder_.columns()[i].text) {
         value = builder_.label(i, field);
@@ -121,6 +126,7 @@ class RowParser {
 
   const std::string& path_;
   char delimiter_;
+  bool ignore_further_fields_;
   TableBuilder& builder_;
   std::size_t fields_;
   std::vector<bool> required_;
@@ -139,20 +145,51 @@ void mark_text_columns(std::vector<SourceColumn>& columns, std::string_view firs
   const std::vector<std::string> cells = split_cells(first_row, delimiter);
   for (std::size_t i = 0; i < std::min(cells.size(), columns.size()); ++i) {
     double value = 0;
-    const bool known = columns[i].quantity && *columns[i].quantity != Quantity::other;
     const auto match = match_heading(parse_heading(columns[i].name));
-    const bool particle = match && match->quantity == Quantity::particle;
+    const Quantity quantity = columns[i].quantity ? *columns[i].quantity
+                              : match             ? match->quantity
+                                                  : Quantity::other;
     const bool word = !cells[i].empty() && !parse_number(cells[i], value);
     // Particle names may start as numbers and go on as words.
-    columns[i].text = particle || (word && !known && !match);
+    columns[i].text =
+        columns[i].text || quantity == Quantity::particle || (word && quantity == Quantity::other);
   }
 }
 
 }  // namespace
 
+std::vector<SourceColumn> columns_by_role(const std::vector<std::string>& cells,
+                                          const std::vector<Role>& roles) {
+  std::vector<SourceColumn> columns;
+  for (const std::string& cell : cells) {
+    const Heading heading = parse_heading(cell);
+    SourceColumn column{cell, heading.unit, Quantity::other};
+    for (const Role& role : roles) {
+      if (role.name != heading.name) continue;
+      column.quantity = role.quantity;
+      if (column.unit.empty()) column.unit = role.unit;
+    }
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+bool header_has(const FileHead& head, const std::vector<std::string_view>& names) {
+  if (head.hdf5) return false;
+  try {
+    const TextHeader header = header_of(head.bytes);
+    return std::all_of(names.begin(), names.end(), [&](std::string_view name) {
+      return std::any_of(header.cells.begin(), header.cells.end(),
+                         [&](const std::string& cell) { return parse_heading(cell).name == name; });
+    });
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 LocalisationTable read_text_table(const std::string& path, const ReadOptions& options,
                                   const TextFormat& format) {
-  LineReader lines(path);
+  LineReader lines(path, format.footer ? Nul::end : Nul::error);
   const TextHeader header = read_header(lines, path);
   ReadOptions effective = options;
   std::vector<SourceColumn> columns =
@@ -177,7 +214,7 @@ LocalisationTable read_text_table(const std::string& path, const ReadOptions& op
 
   TableBuilder builder(path, path, columns, effective);
   if (format.reject_infinite_sigma_z) builder.reject_infinite_sigma_z();
-  RowParser parser(path, header.delimiter, builder);
+  RowParser parser(path, header.delimiter, format.ignore_further_fields, builder);
   for (; more; more = lines.next(line), number = lines.number()) {
     const std::string_view content = without_blanks(line);
     if (content.empty()) {

@@ -8,6 +8,7 @@
 #include "../column_plan.hpp"
 #include "header.hpp"
 #include "smlm/localisation_table.hpp"
+#include "smlm/table_reader.hpp"
 
 namespace smlm {
 
@@ -15,10 +16,26 @@ namespace smlm {
 struct TextFormat {
   /// Names and meanings of the columns; by default the registry of aliases decides.
   std::function<std::vector<SourceColumn>(const TextHeader&, ReadOptions&)> columns;
-  /// Data end at the first blank line (Zeiss writes a footer behind it).
+  /// Data end at the first blank line or NUL byte (Zeiss writes a footer behind them).
   bool footer = false;
+  /// Lines may have more fields than there are columns: the rest is a nested table (rapidSTORM's tracks).
+  bool ignore_further_fields = false;
   bool reject_infinite_sigma_z = false;
 };
+
+/// What a format calls a quantity: the normalised name of a header cell (see Heading).
+struct Role {
+  std::string_view name;
+  Quantity quantity;
+  std::string_view unit = {};  // where the header does not say
+};
+
+/// Columns whose header cell has a role get it; all others are only kept.
+std::vector<SourceColumn> columns_by_role(const std::vector<std::string>& cells,
+                                          const std::vector<Role>& roles);
+
+/// Whether the beginning of a file has a header with all these cells (normalised names).
+bool header_has(const FileHead& head, const std::vector<std::string_view>& names);
 
 /// Parses strictly: every line has as many fields as the header, every field is a number as a whole, or a
 /// word in columns whose first row is a word. Errors are Error(input) at file:line:field. Numbers obey no

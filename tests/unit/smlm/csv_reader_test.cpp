@@ -119,10 +119,10 @@ TEST_F(CsvReader, AssumedNanometresAreSaid) {
   ReadOptions options;
   options.unit = "px";
   options.pixel_size_nm = 130;
-  const LocalisationTable scaled = read("x,y,sigma_xy\n1,2,3\n4,5,6\n", options);
+  const LocalisationTable scaled = read("x,y,sigma_xy\n1,2,.1\n4,5,.1\n", options);
   EXPECT_THAT(scaled.warnings, IsEmpty());
   EXPECT_THAT(scaled.position_nm[0], ElementsAre(130, 260, 0));
-  EXPECT_FLOAT_EQ(scaled.covariance_nm2[0][0], 390.F * 390.F);
+  EXPECT_FLOAT_EQ(scaled.covariance_nm2[0][0], 13.F * 13.F);
 }
 
 TEST_F(CsvReader, ColumnsCanBeNamed) {

@@ -1,0 +1,32 @@
+// Particles out of a whole field of view: around given centres, or where localisations are dense.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "smlm/localisation_table.hpp"
+
+namespace smlm {
+
+struct PickOptions {
+  double radius_nm = 0;                // of a pick; it should just hold one particle
+  std::string centres;                 // table with x and y of the centres; empty: they are found
+  std::size_t min_localisations = 10;  // of a pick that is found; given centres are kept whatever they hold
+};
+
+using Centre = std::array<double, 2>;  // x, y in nm
+
+/// The centres in a table that any reader understands.
+std::vector<Centre> read_centres(const std::string& path);
+
+/// Local maxima of the number of localisations within the radius, found by mean shift from a grid of that
+/// size, densest first, then those left out that lie closer than two radii to a denser one. In ascending x.
+std::vector<Centre> find_centres(const LocalisationTable& table, const PickOptions& options);
+
+/// Gives every localisation to the nearest centre within the radius, or to none. Particles are called "1",
+/// "2", ... in the order of the centres; what the table said about particles is replaced.
+void pick_particles(LocalisationTable& table, const std::vector<Centre>& centres, double radius_nm);
+
+}  // namespace smlm

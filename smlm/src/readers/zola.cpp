@@ -1,0 +1,38 @@
+// ZOLA-3D CSV: positions and Cramer-Rao bounds (standard deviations) in pixels and in nm; z only in nm.
+#include "../text/text_table.hpp"
+#include "readers.hpp"
+
+namespace smlm::readers {
+namespace {
+
+bool recognises(const FileHead& head) {
+  return header_has(head, {"frame", "x", "y", "z", "crlb_xnm", "crlb_ynm"});
+}
+
+std::vector<SourceColumn> columns(const TextHeader& header, ReadOptions&) {
+  auto columns = columns_by_role(header.cells, {{"x", Quantity::x},
+                                                {"y", Quantity::y},
+                                                {"z", Quantity::z},
+                                                {"crlb_xnm", Quantity::sigma_x, "nm"},
+                                                {"crlb_ynm", Quantity::sigma_y, "nm"},
+                                                {"crlb_z", Quantity::sigma_z, "nm"},
+                                                {"frame", Quantity::frame},
+                                                {"intensity", Quantity::photons},
+                                                {"background", Quantity::background}});
+  for (SourceColumn& column : columns) {
+    if (units::parse_length(column.unit) == units::Length::pixel) column.quantity = Quantity::other;
+  }
+  return columns;
+}
+
+LocalisationTable read(const std::string& path, const ReadOptions& options) {
+  TextFormat format;
+  format.columns = columns;
+  return read_text_table(path, options, format);
+}
+
+}  // namespace
+
+const TableReader zola{"zola", "ZOLA-3D (.csv)", recognises, read};
+
+}  // namespace smlm::readers
