@@ -99,29 +99,6 @@ std::unique_ptr<Autoencoder> make_pointnet(const PointNetWeights& weights) {
   return std::make_unique<PointNet>(weights);
 }
 
-Eigen::Matrix<float, Eigen::Dynamic, 3> critical_jacobian(const PointNetWeights& weights,
-                                                          const Eigen::Ref<const Eigen::Matrix3Xf>& cloud,
-                                                          const Encoded& encoded) {
-  const auto& [first, second, third] = weights.encoder;
-  Eigen::Matrix<float, Eigen::Dynamic, 3> jacobian(kLatent, 3);
-  // One point is critical for several channels: its 128 x 3 Jacobian of the second layer is shared.
-  std::vector<std::vector<Eigen::Index>> channels(static_cast<std::size_t>(cloud.cols()));
-  for (Eigen::Index c = 0; c < kLatent; ++c)
-    channels[static_cast<std::size_t>(encoded.critical[c])].push_back(c);
-  for (Eigen::Index p = 0; p < cloud.cols(); ++p) {
-    const auto& mine = channels[static_cast<std::size_t>(p)];
-    if (mine.empty()) continue;
-    const Eigen::VectorXf y1 = first.weight * cloud.col(p) + first.bias;
-    const Eigen::VectorXf y2 = second.weight * y1.cwiseMax(0.0f) + second.bias;
-    const Eigen::Matrix<float, Eigen::Dynamic, 3> j1 =
-        (y1.array() > 0.0f).cast<float>().matrix().asDiagonal() * first.weight.leftCols<3>();
-    const Eigen::Matrix<float, Eigen::Dynamic, 3> j2 =
-        (y2.array() > 0.0f).cast<float>().matrix().asDiagonal() * (second.weight * j1);
-    for (const Eigen::Index c : mine) jacobian.row(c) = third.weight.row(c) * j2;
-  }
-  return jacobian;
-}
-
 std::vector<Encoded> encode_all(const Autoencoder& model, const std::vector<Eigen::Matrix3Xf>& clouds) {
   std::vector<Encoded> out(clouds.size());
   parallel_for(clouds.size(), [&](std::size_t i) { out[i] = model.encode(clouds[i]); });

@@ -12,6 +12,13 @@ constexpr int kCleanPoints = 1024;
 constexpr std::size_t kShapesPerBlock = 8;
 }  // namespace
 
+std::vector<NamedConditions> standard_conditions() {
+  return {{"clean", {}},
+          {"isotropic .05", {{0.05, 0.05, 0.05}, kCleanPoints}},
+          {"anisotropic .02 .02 .1", {{0.02, 0.02, 0.1}, kCleanPoints}},
+          {"200 points", {Eigen::Vector3d::Zero(), 200}}};
+}
+
 double mean_chamfer(const Autoencoder& model, const ShapeSet& shapes, const ScoreConditions& conditions,
                     std::uint64_t seed) {
   const double sum =

@@ -47,8 +47,9 @@ struct TrainOptions {
   double batch_norm_momentum = 0.02;
   int report_every_steps = 100;
   int checkpoint_every_steps = 500;
-  std::string checkpoint;              // file that an interrupted training goes on from; empty: none
-  std::string weights = "weights.h5";  // the result
+  std::string checkpoint;                 // file that an interrupted training goes on from; empty: none
+  std::vector<std::string> score_shapes;  // shape files that only judge the result, never train it
+  std::string weights = "weights.h5";     // the result
 };
 
 /// One sentence per fault, empty when the options can be used.
