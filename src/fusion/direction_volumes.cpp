@@ -182,7 +182,8 @@ const std::int16_t* DirectionVolumes::volume(int sigma_class, int direction) con
              stride_;
 }
 
-int DirectionVolumes::nearest_direction(const Eigen::Vector3f& e) const {
+int DirectionVolumes::direction_of(const SearchView& view, const Eigen::Matrix3f& rotation) const {
+  const Eigen::Vector3f e = rotation * view.axis;
   int best = 0;
   float most = -1;
   for (std::size_t d = 0; d < direction_.size(); ++d) {
@@ -192,10 +193,10 @@ int DirectionVolumes::nearest_direction(const Eigen::Vector3f& e) const {
   return best;
 }
 
-float DirectionVolumes::score(const SearchView& view, const Eigen::Matrix3f& rotation,
+float DirectionVolumes::score(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
                               const Eigen::Vector3f& translation) const {
   constexpr int kBatch = 256;
-  const int direction = nearest_direction(rotation * view.axis);
+  const auto voxel_index = mixture_kernel().voxel_index;
   const float inverse = 1 / voxel_;
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r = rotation * inverse;
   const Eigen::Vector3f t = (translation - origin_) * inverse;
@@ -206,8 +207,8 @@ float DirectionVolumes::score(const SearchView& view, const Eigen::Matrix3f& rot
     for (int begin = 0; begin < part.count; begin += kBatch) {
       const int n = std::min(kBatch, part.count - begin);
       const auto at = static_cast<std::size_t>(begin);
-      mixture_kernel().voxel_index(part.x.data() + at, part.y.data() + at, part.z.data() + at, n, r.data(),
-                                   t.data(), dim_, index);
+      voxel_index(part.x.data() + at, part.y.data() + at, part.z.data() + at, n, r.data(), t.data(), dim_,
+                  index);
       std::int32_t sum0 = 0, sum1 = 0, sum2 = 0, sum3 = 0;
       int j = 0;
       for (; j + 4 <= n; j += 4) {

@@ -22,11 +22,12 @@ constexpr double kGroupVolume =
 void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen::Matrix3f& rotation,
            float step, Eigen::Vector3f& translation, float& best) {
   constexpr int kMostSteps = 6;
+  const int direction = volumes.direction_of(view, rotation);
   for (int half = 0; half < 2; ++half, step *= 0.5f) {
     for (int s = 0; s < kMostSteps; ++s) {
       const Eigen::Vector3f here = translation;
       for (const Eigen::Vector3f& shift : axis_shifts(step, false)) {
-        const float there = volumes.score(view, rotation, here + shift);
+        const float there = volumes.score(view, direction, rotation, here + shift);
         if (there > best) best = there, translation = here + shift;
       }
       if (translation == here) break;
@@ -62,15 +63,22 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
   GridScores out;
   out.log_likelihood.resize(n);
   out.translation.resize(n);
+  std::vector<Eigen::Matrix3f> turned(n);
+  std::vector<std::vector<std::size_t>> by_direction(static_cast<std::size_t>(volumes.directions()));
   for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Matrix3f r = grid.rotation[i] * turn;
-    float best = -INFINITY;
-    for (const Eigen::Vector3f& t : options.translation) {
-      const float there = volumes.score(view, r, t);
-      if (there > best) best = there, out.translation[i] = t;
-    }
-    out.log_likelihood[i] = best;
+    turned[i] = grid.rotation[i] * turn;
+    by_direction[static_cast<std::size_t>(volumes.direction_of(view, turned[i]))].push_back(i);
   }
+  // All rotations that read one volume in a row: it then stays in the cache.
+  for (std::size_t d = 0; d < by_direction.size(); ++d)
+    for (const std::size_t i : by_direction[d]) {
+      float best = -INFINITY;
+      for (const Eigen::Vector3f& t : options.translation) {
+        const float there = volumes.score(view, static_cast<int>(d), turned[i], t);
+        if (there > best) best = there, out.translation[i] = t;
+      }
+      out.log_likelihood[i] = best;
+    }
   if (options.step <= 0 || options.promising <= 0) return out;
   std::vector<int> order(n);
   std::iota(order.begin(), order.end(), 0);
@@ -83,7 +91,7 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
                     });
   for (std::size_t k = 0; k < few; ++k) {
     const auto i = static_cast<std::size_t>(order[k]);
-    climb(volumes, view, grid.rotation[i] * turn, options.step, out.translation[i], out.log_likelihood[i]);
+    climb(volumes, view, turned[i], options.step, out.translation[i], out.log_likelihood[i]);
   }
   return out;
 }

@@ -47,15 +47,18 @@ class DirectionVolumes {
   /// variances.
   DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions, bool planar);
 
-  /// sum_j ln p(R x_j + t), nearest voxel; R is template_from_view.
-  float score(const SearchView& view, const Eigen::Matrix3f& rotation,
+  /// Which direction's volume serves a pose: R is template_from_view.
+  int direction_of(const SearchView& view, const Eigen::Matrix3f& rotation) const;
+  int directions() const { return static_cast<int>(direction_.size()); }
+
+  /// sum_j ln p(R x_j + t), nearest voxel, in the volume of direction_of(view, R).
+  float score(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
               const Eigen::Vector3f& translation) const;
 
   float voxel() const { return voxel_; }
 
  private:
   const std::int16_t* volume(int sigma_class, int direction) const;
-  int nearest_direction(const Eigen::Vector3f& e) const;
 
   float voxel_ = 1, zero_ = 0, scale_ = 1;  // ln p = value / scale + zero
   Eigen::Vector3f origin_;                  // of voxel (0, 0, 0)
