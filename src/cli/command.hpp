@@ -9,7 +9,10 @@ namespace polar::cli {
 /// Set by the subcommand that was given: does the work, returns the exit code.
 using Action = std::function<int()>;
 
+void add_run(CLI::App& app, Action& action);
+void add_export(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
+void add_train(CLI::App& app, Action& action);
 
 }  // namespace polar::cli

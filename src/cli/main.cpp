@@ -4,6 +4,7 @@
 #include <new>
 
 #include "command.hpp"
+#include "polar/pipeline/version.hpp"
 #include "smlm/error.hpp"
 
 namespace {
@@ -21,11 +22,14 @@ int report(const std::string& what, int code) {
 
 int main(int argc, char** argv) {
   CLI::App app{"polar: aligns copies of one structure in localisation microscopy"};
-  app.set_version_flag("--version", std::string("polar ") + POLAR_VERSION);
+  app.set_version_flag("--version", polar::program_version());
   app.require_subcommand(1);
   polar::cli::Action action;
+  polar::cli::add_run(app, action);
   polar::cli::add_simulate(app, action);
+  polar::cli::add_export(app, action);
   polar::cli::add_evaluate(app, action);
+  polar::cli::add_train(app, action);
   try {
     app.parse(argc, argv);
     return action();

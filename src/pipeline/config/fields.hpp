@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -36,13 +37,13 @@ class FieldReader {
     body(inner);
     inner.finish();
   }
-  /// A map with keys of the user's choice; `body(key, reader)` for each.
-  template <class Body>
-  void each(const char* name, Body body) {
+  /// A map with keys of the user's choice; `body(reader, value)` for each.
+  template <class Value, class Body>
+  void entries(const char* name, std::map<std::string, Value>& map, Body body) {
     const FieldReader outer = enter(name);
     for (const auto& [key, value] : outer.map_.entries) {
       FieldReader inner(value, where_, outer.prefix_ + key + ".");
-      body(key, inner);
+      body(inner, map[key]);
       inner.finish();
     }
   }
@@ -79,6 +80,14 @@ class FieldWriter {
     ++depth_;
     body(*this);
     --depth_;
+  }
+  template <class Value, class Body>
+  void entries(const char* name, std::map<std::string, Value>& map, Body body) {
+    if (map.empty()) return line(std::string(name) + ": {}");
+    section(name, [&](FieldWriter& outer) {
+      for (auto& [key, value] : map)
+        outer.section(key.c_str(), [&, &mapped = value](FieldWriter& inner) { body(inner, mapped); });
+    });
   }
   const std::string& text() const { return text_; }
 

@@ -1,0 +1,34 @@
+// `polar run`: read, group, prepare, register, write.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "polar/core/progress.hpp"
+#include "polar/pipeline/run_config.hpp"
+#include "polar/registration/registration.hpp"
+
+namespace polar {
+
+struct RunFlags {
+  bool overwrite = false;  // replace what an earlier run wrote
+  bool resume = false;     // keep a complete result of the same configuration and input
+};
+
+struct RunOutcome {
+  bool cancelled = false;            // nothing was written
+  std::vector<std::string> summary;  // lines for stdout
+};
+
+/// The engine; tests put another one in its place.
+using Engine = std::function<Registration(const Views&, const RegistrationOptions&, Progress&)>;
+
+/// Checks and locks the output directory first, computes, then writes every file whole, summary.json last: a
+/// directory with summary.json is complete. Throws smlm::Error (see docs/faults.md).
+RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress, const Engine& engine);
+
+/// The same with register_views.
+RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress);
+
+}  // namespace polar

@@ -1,0 +1,35 @@
+// The configuration of `polar run` (configs/default.yaml has every key) as option structs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "polar/registration/register.hpp"
+#include "smlm/read_options.hpp"
+
+namespace polar {
+
+struct OutputOptions {
+  std::string directory = "results";
+  /// Beside poses.csv and summary.json, which are always written: hdf5 (results.h5, the record), vtkhdf
+  /// (aligned.hdf, template.hdf), csv (aligned.csv).
+  std::vector<std::string> formats = {"hdf5", "vtkhdf", "csv"};
+  double voxel_nm = 0;  // of template.hdf and preview.png; 0: half the median uncertainty
+  bool preview = true;  // preview.png
+};
+
+struct RunConfig {
+  std::vector<std::string> files;  // absolute, expanded
+  smlm::ReadOptions read;
+  RegistrationOptions registration;
+  OutputOptions output;
+};
+
+/// Reads the file, applies `section.key=value` overrides, resolves paths against the file's folder and checks
+/// everything. Throws smlm::Error: usage for the configuration, input for files that do not exist.
+RunConfig load_run_config(const std::string& path, const std::vector<std::string>& overrides);
+
+/// The effective configuration as YAML text, every key written; reads back to the same configuration.
+std::string run_config_text(const RunConfig& config);
+
+}  // namespace polar

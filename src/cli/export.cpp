@@ -1,0 +1,48 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "command.hpp"
+#include "polar/pipeline/outputs.hpp"
+#include "polar/results/result_file.hpp"
+#include "smlm/error.hpp"
+
+namespace polar::cli {
+
+namespace {
+struct Arguments {
+  std::string result, output;
+  std::vector<std::string> formats;
+  double voxel_nm = 0;
+};
+
+int run(const Arguments& a) {
+  const bool is_directory = std::filesystem::is_directory(a.result);
+  const std::string record = is_directory ? a.result + "/results.h5" : a.result;
+  const std::filesystem::path beside = std::filesystem::path(record).parent_path();
+  const std::string output = !a.output.empty() ? a.output : beside.empty() ? "." : beside.string();
+  if (!std::filesystem::is_directory(output))
+    throw smlm::Error(smlm::Fault::io, output, "no such directory", "create it first");
+  const ResultRecord result = read_result_file(record);
+  for (const std::string& format : a.formats)
+    for (const std::string& name : write_format(format, output, result.superparticle, {a.voxel_nm}))
+      std::printf("%s/%s\n", output.c_str(), name.c_str());
+  return 0;
+}
+}  // namespace
+
+void add_export(CLI::App& app, Action& action) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* sub = app.add_subcommand("export", "Write further formats from a result's record");
+  sub->add_option("result", a->result, "result directory or results.h5")->required();
+  sub->add_option("--format", a->formats, "one or more formats")
+      ->required()
+      ->delimiter(',')
+      ->check(CLI::IsMember(export_formats()));
+  sub->add_option("--output", a->output, "directory; default: beside the record");
+  sub->add_option("--voxel-nm", a->voxel_nm, "voxel of rendered files; 0: half the median uncertainty")
+      ->check(CLI::NonNegativeNumber);
+  sub->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace polar::cli

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace polar::pipeline {
+
+/// Names a computation: FNV-1a (64 bits; G. Fowler, L. C. Noll, K.-P. Vo) over the files' content, in their
+/// order, and over `configuration`. Tells a changed input from an unchanged one; it is no protection
+/// against an adversary.
+std::string input_hash(const std::vector<std::string>& files, const std::string& configuration);
+
+}  // namespace polar::pipeline

@@ -1,0 +1,66 @@
+#include "output_directory.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "smlm/error.hpp"
+
+namespace polar::pipeline {
+
+namespace {
+constexpr const char* kLock = ".polar.lock";
+constexpr const char* kResultFiles[] = {"poses.csv",   "results.h5",  "aligned.hdf", "template.hdf",
+                                        "aligned.csv", "preview.png", "summary.json"};
+
+[[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) {
+  throw smlm::Error(smlm::Fault::io, path, what, remedy);
+}
+
+bool holds_something(const std::string& path) {
+  for (const auto& entry : std::filesystem::directory_iterator(path))
+    if (entry.path().filename() != kLock) return true;
+  return false;
+}
+}  // namespace
+
+OutputDirectory::OutputDirectory(const std::string& path, const RunFlags& flags) : path_(path) {
+  std::error_code ec;
+  std::filesystem::create_directories(path, ec);
+  if (!std::filesystem::is_directory(path)) {
+    const bool in_the_way = std::filesystem::exists(path);
+    fail(path, in_the_way ? "is not a directory" : "cannot be created: " + ec.message(),
+         "choose another output.directory");
+  }
+  lock_ = ::open(file(kLock).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock_ < 0)
+    fail(path, std::string("cannot be written: ") + std::strerror(errno), "choose another output.directory");
+  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(lock_);
+    fail(path, "another process is writing here", "wait for it, or choose another output.directory");
+  }
+  if (!flags.overwrite && !flags.resume && holds_something(path)) {
+    ::close(lock_);
+    fail(path, "is not empty", "give --overwrite or --resume, or choose another output.directory");
+  }
+}
+
+OutputDirectory::~OutputDirectory() {
+  ::unlink(file(kLock).c_str());  // while it is still locked: nobody else can hold this name
+  ::close(lock_);
+}
+
+void OutputDirectory::remove_other_results(const std::vector<std::string>& written) const {
+  for (const char* name : kResultFiles) {
+    if (std::find(written.begin(), written.end(), name) != written.end()) continue;
+    std::error_code ignored;  // what cannot be removed will be reported by whoever replaces it
+    std::filesystem::remove(file(name), ignored);
+  }
+}
+
+}  // namespace polar::pipeline

@@ -1,0 +1,216 @@
+#include "polar/pipeline/run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "input_hash.hpp"
+#include "output_directory.hpp"
+#include "polar/pipeline/outputs.hpp"
+#include "polar/pipeline/version.hpp"
+#include "polar/registration/prepare.hpp"
+#include "polar/results/result_file.hpp"
+#include "polar/results/results.hpp"
+#include "smlm/atomic_file.hpp"
+#include "smlm/error.hpp"
+#include "smlm/table_reader.hpp"
+
+namespace polar {
+
+namespace {
+constexpr const char* kSummary = "summary.json";
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// The configuration without where its files lie: the same computation in another place is the same.
+std::string computation_text(RunConfig config) {
+  config.output = {};
+  for (std::string& file : config.files) file = std::filesystem::path(file).filename().string();
+  return run_config_text(config);
+}
+
+// Whether the directory holds a complete result of this very computation. One of another computation is
+// never mixed with or silently replaced.
+bool is_complete(const pipeline::OutputDirectory& directory, const std::string& hash) {
+  std::ifstream in(directory.file(kSummary));
+  if (!in) return false;
+  const nlohmann::json summary = nlohmann::json::parse(in, nullptr, false);
+  if (summary.is_object() && summary.value("input_hash", "") == hash) return true;
+  throw smlm::Error(smlm::Fault::input, directory.file(kSummary), "belongs to another input or configuration",
+                    "give --overwrite to replace it, or choose another output.directory");
+}
+
+smlm::ParticleSet read_particles(const RunConfig& config, Progress& progress) {
+  smlm::ParticleSet set = smlm::group_particles(smlm::read_tables(config.files, config.read));
+  for (const std::string& warning : set.table.warnings) progress.note("warning: " + warning);
+  for (const smlm::Rejection& r : set.table.rejected)
+    progress.note("warning: " + std::to_string(r.rows) + " rows left out: " + r.reason + " (first: row " +
+                  std::to_string(r.first_row) + ")");
+  if (set.particles.size() < 2)
+    throw smlm::Error(
+        smlm::Fault::input, config.files.front(),
+        std::to_string(set.particles.size()) + " particle" + (set.particles.size() == 1 ? "" : "s"),
+        "at least two are needed; which column names the particle (input.columns.particle, or "
+        "input.particles: one_per_file)?");
+  return set;
+}
+
+std::size_t accepted(const Results& r) {
+  return static_cast<std::size_t>(std::count_if(r.registration.view.begin(), r.registration.view.end(),
+                                                [](const RegisteredView& v) { return v.accepted; }));
+}
+
+// Rejected particles by reason, the most frequent first.
+std::vector<std::pair<std::size_t, std::string>> rejections(const Results& r) {
+  std::map<std::string, std::size_t> count;
+  for (const RegisteredView& v : r.registration.view)
+    if (!v.accepted) ++count[v.reason];
+  std::vector<std::pair<std::size_t, std::string>> sorted;
+  for (const auto& [reason, n] : count) sorted.emplace_back(n, reason);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  return sorted;
+}
+
+std::string winner(const Registration& g) {
+  for (const StartReport& s : g.starts)
+    if (s.won) return s.name;
+  return "none";
+}
+
+std::string format(const char* pattern, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
+
+std::vector<std::string> describe(const Results& r, const std::string& directory, double seconds) {
+  const Registration& g = r.registration;
+  const std::size_t n = r.particles.particles.size();
+  std::vector<std::string> lines = {"particles    " + std::to_string(accepted(r)) + " of " +
+                                    std::to_string(n) + " accepted"};
+  for (const auto& [count, reason] : rejections(r))
+    lines.push_back("rejected     " + std::to_string(count) + ": " + reason);
+  std::vector<double> rotation, translation;
+  for (const PoseRow& row : pose_rows(r))
+    if (row.accepted) {
+      rotation.push_back(row.rotation_std_deg);
+      translation.push_back(row.translation_std_nm);
+    }
+  const auto median = [](std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+    return v[v.size() / 2];
+  };
+  lines.push_back("precision    " + format("%.2f deg, ", median(rotation)) +
+                  format("%.2f nm", median(translation)) + " (median of the estimated standard deviations)");
+  lines.push_back("start        " + winner(g) + " won of " + std::to_string(g.starts.size()));
+  lines.push_back("rounds       " + std::to_string(g.rounds) +
+                  (g.converged ? ", converged: " : ", not converged: ") + g.stopped_because);
+  lines.push_back("seconds      " + format("%.1f", seconds));
+  lines.push_back("results      " + directory);
+  return lines;
+}
+
+nlohmann::json summary_json(const Results& r, const std::vector<std::string>& lines,
+                            const std::vector<std::string>& files, double seconds) {
+  const Registration& g = r.registration;
+  nlohmann::json timings = nlohmann::json::array(), starts = nlohmann::json::array();
+  for (const auto& t : g.timings) timings.push_back({{"stage", t.stage}, {"seconds", t.seconds}});
+  for (const StartReport& s : g.starts)
+    starts.push_back(
+        {{"name", s.name}, {"held_out_log_likelihood", s.held_out_log_likelihood}, {"won", s.won}});
+  return {{"program", r.provenance.program},
+          {"input_hash", r.provenance.input_hash},
+          {"seed", r.provenance.seed},
+          {"particles", r.particles.particles.size()},
+          {"accepted", accepted(r)},
+          {"localisations", r.particles.table.size()},
+          {"planar", r.planar},
+          {"rounds", g.rounds},
+          {"converged", g.converged},
+          {"stopped_because", g.stopped_because},
+          {"starts", starts},
+          {"timings", timings},
+          {"warnings", g.warnings},
+          {"seconds", seconds},
+          {"files", files},
+          {"text", lines}};
+}
+
+Results compute(const RunConfig& config, const std::string& hash, Progress& progress, const Engine& engine) {
+  Results r;
+  r.particles = read_particles(config, progress);
+  Views views = prepare_views(r.particles, {});
+  r.registration = engine(views, config.registration, progress);
+  r.normalisation = std::move(views.normalisation);
+  r.planar = views.planar;
+  r.provenance = {program_version(), run_config_text(config), config.registration.seed, hash,
+                  library_versions()};
+  return r;
+}
+
+std::vector<std::string> write(const Results& r, const RunConfig& config,
+                               const pipeline::OutputDirectory& directory) {
+  // Without its summary the directory is not complete: it goes first and comes back last.
+  std::filesystem::remove(directory.file(kSummary));
+  const smlm::LocalisationTable aligned = superparticle(r);
+  const RenderOptions render{config.output.voxel_nm};
+  std::vector<std::string> written = {"poses.csv"};
+  smlm::write_file_atomically(directory.file("poses.csv"), format_pose_table(pose_rows(r)));
+  std::vector<std::string> formats = config.output.formats;
+  if (config.output.preview) formats.emplace_back("png");
+  for (const std::string& format : formats) {
+    if (format == "hdf5") {
+      write_result_file(directory.file("results.h5"), r, aligned);
+      written.emplace_back("results.h5");
+      continue;
+    }
+    for (const std::string& name : write_format(format, config.output.directory, aligned, render))
+      written.push_back(name);
+  }
+  return written;
+}
+}  // namespace
+
+RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress, const Engine& engine) {
+  const Stopwatch watch;
+  const pipeline::OutputDirectory directory(config.output.directory, flags);
+  const std::string hash = pipeline::input_hash(config.files, computation_text(config));
+  if (flags.resume && is_complete(directory, hash))
+    return {false, {"results      " + config.output.directory + " (complete already)"}};
+  const Results r = compute(config, hash, progress, engine);
+  if (progress.cancelled()) return {true, {}};
+  for (const std::string& warning : r.registration.warnings) progress.note("warning: " + warning);
+  if (accepted(r) == 0) {
+    const auto reasons = rejections(r);
+    throw smlm::Error(smlm::Fault::numerical, config.files.front(), "no particle could be registered",
+                      reasons.empty() ? "" : "most were rejected because: " + reasons.front().second);
+  }
+  const std::vector<std::string> written = write(r, config, directory);
+  const double seconds = watch.seconds();
+  const std::vector<std::string> lines = describe(r, config.output.directory, seconds);
+  smlm::write_file_atomically(directory.file(kSummary),
+                              summary_json(r, lines, written, seconds).dump(2) + "\n");
+  std::vector<std::string> kept = written;
+  kept.emplace_back(kSummary);
+  directory.remove_other_results(kept);
+  return {false, lines};
+}
+
+RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress) {
+  return run(config, flags, progress, register_views);
+}
+
+}  // namespace polar

@@ -1,0 +1,85 @@
+#include "polar/pipeline/run_config.hpp"
+
+#include <algorithm>
+
+#include "config/fields.hpp"
+#include "config/paths.hpp"
+#include "smlm/error.hpp"
+
+namespace polar {
+
+namespace {
+template <class Visitor>
+void fields(Visitor& v, RunConfig& c) {
+  v.section("input", [&](auto& s) {
+    smlm::ReadOptions& o = c.read;
+    s.field("files", c.files);
+    s.field("format", o.format);
+    s.entries("columns", o.columns, [](auto& column, smlm::ColumnMapping& mapping) {
+      column.field("name", mapping.name);
+      column.field("unit", mapping.unit);
+      column.field("kind", mapping.kind);
+    });
+    s.field("pixel_size_nm", o.pixel_size_nm);
+    s.field("unit", o.unit);
+    s.field("sigma_kind", o.sigma_kind);
+    s.field("lpz_unit", o.lpz_unit);
+    s.field("particles", o.particles);
+    s.field("unassigned_particle", o.unassigned_particle);
+    s.field("drop_nonfinite", o.drop_nonfinite);
+    s.field("assumed_sigma_nm", o.assumed_sigma_nm);
+    s.field("minflux_z_factor", o.minflux_z_factor);
+  });
+  v.section("registration", [&](auto& s) {
+    RegistrationOptions& o = c.registration;
+    s.field("seed", o.seed);
+    s.field("starts", o.starts);
+    s.field("search", o.search);
+    s.field("symmetry", o.symmetry);
+  });
+  v.section("output", [&](auto& s) {
+    s.field("directory", c.output.directory);
+    s.field("formats", c.output.formats);
+    s.field("voxel_nm", c.output.voxel_nm);
+    s.field("preview", c.output.preview);
+  });
+}
+
+void check(const RunConfig& c, const std::string& path) {
+  std::vector<std::string> faults;
+  if (c.files.empty()) faults.emplace_back("input.files is missing: list the localisation tables");
+  for (const std::string& fault : violations(c.read)) faults.push_back("input." + fault);
+  for (const std::string& fault : violations(c.registration)) faults.push_back("registration: " + fault);
+  for (const std::string& format : c.output.formats)
+    if (format != "hdf5" && format != "vtkhdf" && format != "csv")
+      faults.push_back("output.formats holds '" + format + "', expected hdf5, vtkhdf or csv");
+  if (!(c.output.voxel_nm >= 0)) faults.emplace_back("output.voxel_nm must be 0 or more");
+  if (c.output.directory.empty()) faults.emplace_back("output.directory is empty");
+  std::string all;
+  for (const std::string& fault : faults) all += (all.empty() ? "" : "; ") + fault;
+  if (!all.empty()) throw smlm::Error(smlm::Fault::usage, path, all);
+}
+}  // namespace
+
+RunConfig load_run_config(const std::string& path, const std::vector<std::string>& overrides) {
+  pipeline::Node root = pipeline::load_yaml(path);
+  for (const std::string& assignment : overrides) pipeline::apply_override(root, assignment);
+  RunConfig config;
+  pipeline::FieldReader reader(root, path);
+  fields(reader, config);
+  reader.finish();
+  check(config, path);
+  const std::string folder = pipeline::folder_of(path);
+  config.files = pipeline::expand_files(config.files, folder);
+  config.output.directory = pipeline::resolve_path(config.output.directory, folder);
+  return config;
+}
+
+std::string run_config_text(const RunConfig& config) {
+  RunConfig copy = config;
+  pipeline::FieldWriter writer;
+  fields(writer, copy);
+  return writer.text();
+}
+
+}  // namespace polar
