@@ -184,6 +184,9 @@ class Planner {
     for (const Quantity q : {Quantity::x, Quantity::y}) {
       if (has(q)) continue;
       const std::string key(column_spec(q).name);
+      if (!columns_.empty() && columns_.front().name == "1") {
+        fail("has no header", "say which column is what, e.g. input.columns." + key + ": {name: '1'}");
+      }
       fail("no column is known as " + key + "; its columns are " + list_columns(columns_),
            "name it under input.columns." + key);
     }

@@ -12,7 +12,8 @@ namespace {
 // Six significant digits; to_chars knows no locale.
 std::string number(double value) {
   std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 6).ptr;
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 6).ptr;
   return {buffer.data(), end};
 }
 

@@ -38,7 +38,10 @@ void refuse_known(const FileHead& head) {
   if (is_mat_v5(head.bytes))
     refuse("is a MATLAB file without a known table", "save a cell array 'particles', or export CSV");
   if (starts("#ASDF")) refuse("is an ASDF file", "export the table as CSV from Locan");
-  if (starts("PK\x03\x04")) refuse("is a ZIP archive that is not an .smlm file", "unpack it first");
+  if (starts("PK\x03\x04")) refuse("is a ZIP archive and not an .smlm file, or damaged", "unpack it first");
+  if (head.bytes.find(": ") < head.bytes.find('\n')) {
+    refuse("looks like YAML, not a table", "name the .hdf5 file beside it");
+  }
   if (starts("\x80\x02") || starts("\x80\x03") || starts("\x80\x04") || starts("\x80\x05")) {
     refuse("is a Python pickle, which can run code and is never opened", "write it as CSV or HDF5");
   }

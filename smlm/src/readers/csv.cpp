@@ -9,7 +9,10 @@ namespace {
 bool recognises(const FileHead& head) {
   if (head.hdf5 || head.bytes.find('\0') != std::string::npos) return false;
   try {
-    return header_of(head.bytes).cells.size() >= 2;
+    const TextHeader header = header_of(head.bytes);
+    // "Byte Order: <" is a sidecar and no table.
+    const bool yaml = header.delimiter == ' ' && head.bytes.find(": ") < head.bytes.find('\n');
+    return header.cells.size() >= 2 && !yaml;
   } catch (const Error&) {
     return false;
   }

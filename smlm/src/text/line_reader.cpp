@@ -8,14 +8,15 @@
 namespace smlm {
 namespace {
 
-constexpr std::size_t buffer_bytes = std::size_t{1} << 20;  // also the longest line
+constexpr std::size_t first_buffer_bytes = std::size_t{1} << 16;
+constexpr std::size_t longest_line_bytes = std::size_t{1} << 20;
 
 }  // namespace
 
 LineReader::LineReader(const std::string& path, Nul nul)
-    : path_(path), nul_(nul), file_(gzopen(path.c_str(), "rb")), buffer_(buffer_bytes) {
+    : path_(path), nul_(nul), file_(gzopen(path.c_str(), "rb")), buffer_(first_buffer_bytes) {
   if (!file_) throw Error(Fault::io, path, std::strerror(errno), "check the name and the permissions");
-  gzbuffer(file_.get(), 1 << 18);
+  gzbuffer(file_.get(), first_buffer_bytes);
 }
 
 bool LineReader::refill() {
@@ -23,10 +24,11 @@ bool LineReader::refill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  if (end_ == buffer_.size()) {
+  if (end_ == longest_line_bytes) {
     throw Error(Fault::input, path_ + ":" + std::to_string(number_ + 1), "the line is longer than 1 MiB",
                 "is this a table of text?");
   }
+  if (end_ == buffer_.size()) buffer_.resize(2 * buffer_.size());
   const int read = gzread(file_.get(), buffer_.data() + end_, static_cast<unsigned>(buffer_.size() - end_));
   int status = Z_OK;
   const char* reason = gzerror(file_.get(), &status);

@@ -77,27 +77,25 @@ class RowParser {
     }
     if (const auto& particle = builder.plan()[Quantity::particle]) required_[particle->column] = false;
     for (const std::size_t kept : builder.plan().extra) required_[kept] = false;
-    block_.columns.assign(fields_, std::vector<double>(block_rows));
-    block_.row.reserve(block_rows);
-    block_.line.reserve(block_rows);
+    block_.columns.resize(fields_);
   }
 
   void parse(std::string_view line, std::uint64_t number) {
     if (delimiter_ == ' ') line = without_blanks(line);
     const std::string_view whole = line;
-    const std::size_t row = block_.row.size();
     for (std::size_t i = 0; i < fields_; ++i) {
       std::string_view field;
       const bool more = next_field(line, delimiter_, field);
       const bool last = i + 1 == fields_;
       if (last ? more && !ignore_further_fields_ : !more) fail_count(whole, number);
-      double& value = block_.columns[i][row];
+      double value = 0;
       if (builder_.columns()[i].text) {
         value = builder_.label(i, field);
       } else if (!parse_number(field, value)) {
         if (!field.empty() || required_[i]) fail_field(field, number, i);
         value = std::nan("");
       }
+      block_.columns[i].push_back(value);
     }
     block_.row.push_back(++rows_);
     block_.line.push_back(number);
@@ -106,6 +104,7 @@ class RowParser {
 
   void flush() {
     builder_.append(block_);
+    for (auto& column : block_.columns) column.clear();
     block_.row.clear();
     block_.line.clear();
   }

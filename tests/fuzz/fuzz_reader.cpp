@@ -1,0 +1,57 @@
+// One reader on arbitrary bytes: it may refuse them with an smlm::Error, and whatever it accepts must be a
+// sound table. POLAR_FUZZ_FORMAT is the reader's name, or "auto".
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "smlm/error.hpp"
+#include "smlm/inspect.hpp"
+#include "smlm/table_reader.hpp"
+
+namespace {
+
+std::string write_input(const std::uint8_t* data, std::size_t size) {
+  static const std::string path = "/dev/shm/polar_fuzz_" + std::to_string(::getpid()) + ".input";
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr || std::fwrite(data, 1, size, file) != size) std::abort();
+  std::fclose(file);
+  return path;
+}
+
+void require(bool sound) {
+  if (!sound) std::abort();
+}
+
+void check(const smlm::LocalisationTable& table) {
+  const std::size_t n = table.size();
+  require(table.covariance_nm2.size() == n && table.particle.size() == n && table.source_row.size() == n);
+  for (const smlm::ExtraColumn& extra : table.extra) require(extra.values.size() == n);
+  for (std::size_t row = 0; row < n; ++row) {
+    for (const double x : table.position_nm[row]) require(std::isfinite(x));
+    const smlm::Covariance& c = table.covariance_nm2[row];
+    require(c[0] > 0 && c[3] > 0 && c[5] > 0);
+    require(table.particle[row] >= -1 &&
+            table.particle[row] < static_cast<std::int64_t>(table.particle_names.size()));
+  }
+  require(!smlm::to_json(smlm::inspect(table)).empty());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  smlm::ReadOptions options;
+  options.format = POLAR_FUZZ_FORMAT;
+  options.pixel_size_nm = 100;
+  for (const bool drop : {false, true}) {
+    options.drop_nonfinite = drop;
+    try {
+      check(smlm::read_table(write_input(data, size), options));
+    } catch (const smlm::Error&) {
+    }
+  }
+  return 0;
+}
