@@ -16,6 +16,8 @@
 
 namespace polar {
 
+constexpr std::size_t kCloudsPerBlock = 4;  // partial sums are added in the order of such blocks
+
 class EncoderStep {
  public:
   /// Latent vectors, clouds x 1024.

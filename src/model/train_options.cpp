@@ -27,7 +27,7 @@ std::vector<std::string> violations(const TrainOptions& o) {
   need(d.max_sigma >= 0.005 && d.max_sigma <= 1, "degradation.max_sigma must be between 0.005 and 1");
   need(d.min_visibility > 0 && d.min_visibility <= 1, "degradation.min_visibility must be in (0, 1]");
   need(o.clouds_per_step >= 2 && o.clouds_per_step <= 4096, "clouds_per_step must be between 2 and 4096");
-  need(o.steps >= 1, "steps must be at least 1");
+  need(o.steps >= 1 && o.steps <= 1000000000, "steps must be between 1 and 1000000000");
   need(o.learning_rate > 0 && o.learning_rate <= 1, "learning_rate must be in (0, 1]");
   need(o.schedule == "cosine" || o.schedule == "plateau", "schedule must be cosine or plateau");
   need(o.warmup_steps >= 0, "warmup_steps must not be negative");
