@@ -64,9 +64,11 @@ TrainReport train(const TrainOptions& options, Progress& progress) {
   TrainReport report;
   const Clock::time_point start = Clock::now();
   const std::int64_t first = state.step;
-  const auto rate = [&] {
-    return static_cast<double>((state.step - first) * options.clouds_per_step) / seconds_since(start);
+  const auto rate = [&](std::int64_t from, Clock::time_point since) {
+    return static_cast<double>((state.step - from) * options.clouds_per_step) / seconds_since(since);
   };
+  std::int64_t reported = first;  // the rate of a report is that of the steps since the last one
+  Clock::time_point report_time = start;
   while (state.step < options.steps && !progress.cancelled()) {
     const std::uint64_t item = static_cast<std::uint64_t>(state.step) * clouds;
     parallel_for(clouds, [&](std::size_t i) {
@@ -87,7 +89,9 @@ TrainReport train(const TrainOptions& options, Progress& progress) {
       state.curve_loss.push_back(state.loss_sum / options.report_every_steps);
       state.loss_sum = 0;
       update_plateau(options, state.curve_loss.back(), state);
-      progress.note(report_line(state, options, rate()));
+      progress.note(report_line(state, options, rate(reported, report_time)));
+      reported = state.step;
+      report_time = Clock::now();
     }
     progress.step("train", static_cast<int>(state.step), static_cast<int>(options.steps));
     const bool last = state.step == options.steps || progress.cancelled();
@@ -97,7 +101,7 @@ TrainReport train(const TrainOptions& options, Progress& progress) {
   report.step = state.curve_step;
   report.loss = state.curve_loss;
   report.steps_done = state.step;
-  report.clouds_per_second = state.step > first ? rate() : 0;
+  report.clouds_per_second = state.step > first ? rate(first, start) : 0;
   const bool complete = state.step >= options.steps;
   report.stopped_because = complete ? "all steps done" : "it was interrupted";
   if (complete)
