@@ -2,6 +2,7 @@
 
 #include <matio.h>
 
+#include <filesystem>
 #include <limits>
 #include <memory>
 
@@ -11,6 +12,9 @@ namespace smlm {
 namespace {
 
 constexpr int deepest = 6;
+// A damaged file can claim any number of axes or cells, and libmatio walks them all.
+constexpr int most_axes = 8;
+constexpr std::size_t most_cells = 1'000'000;
 
 struct CloseFile {
   void operator()(mat_t* file) const { Mat_Close(file); }
@@ -75,17 +79,27 @@ std::size_t elements_of(const matvar_t* variable) {
   return elements;
 }
 
-MatValue value_of(matvar_t* variable, int depth) {
+// More values than the file can hold even if each were one byte, deflated at the best possible ratio.
+std::size_t deflated_most(const std::string& path) {
+  constexpr std::uintmax_t max_deflate_ratio = 1032;
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  return error ? 0 : static_cast<std::size_t>(bytes * max_deflate_ratio);
+}
+
+MatValue value_of(matvar_t* variable, std::size_t most_elements, int depth) {
   MatValue value;
   if (variable == nullptr || variable->data == nullptr || variable->dims == nullptr || depth > deepest)
     return value;
   const std::size_t elements = elements_of(variable);
+  if (elements > most_elements) return value;
   value.dims.assign(variable->dims, variable->dims + variable->rank);
   if (variable->class_type == MAT_C_CELL) {
-    if (elements > variable->nbytes / sizeof(matvar_t*)) return value;
+    if (elements > most_cells || elements > variable->nbytes / sizeof(matvar_t*)) return value;
     value.kind = MatValue::Kind::cells;
     for (std::size_t i = 0; i < elements; ++i) {
-      value.cells.push_back(value_of(Mat_VarGetCell(variable, static_cast<int>(i)), depth + 1));
+      value.cells.push_back(
+          value_of(Mat_VarGetCell(variable, static_cast<int>(i)), most_elements, depth + 1));
     }
   } else if (variable->class_type == MAT_C_STRUCT) {
     if (elements != 1) return value;
@@ -94,7 +108,8 @@ MatValue value_of(matvar_t* variable, int depth) {
     const unsigned count = Mat_VarGetNumberOfFields(variable);
     for (unsigned i = 0; names != nullptr && i < count; ++i) {
       if (names[i] == nullptr) continue;
-      value.fields.emplace(names[i], value_of(Mat_VarGetStructFieldByIndex(variable, i, 0), depth + 1));
+      value.fields.emplace(names[i],
+                           value_of(Mat_VarGetStructFieldByIndex(variable, i, 0), most_elements, depth + 1));
     }
   } else if (variable->isComplex == 0) {
     value.numbers = numbers_of(variable, elements);
@@ -132,7 +147,7 @@ MatValue read_mat_v5(const std::string& path, const std::string& name) {
   const Variable variable(Mat_VarRead(file.get(), name.c_str()));
   if (!variable)
     throw Error(Fault::input, path, "its variable '" + name + "' cannot be read", "save it again");
-  return value_of(variable.get(), 0);
+  return value_of(variable.get(), deflated_most(path), 0);
 }
 
 }  // namespace smlm

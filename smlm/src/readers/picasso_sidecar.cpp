@@ -1,51 +1,28 @@
 #include "picasso_sidecar.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <string_view>
 
-#include "smlm/error.hpp"
+#include "../text/line_reader.hpp"
 
 namespace smlm::readers {
 namespace {
 
-constexpr std::uintmax_t largest_bytes = 16 << 20;
-constexpr int deepest = 64;
+constexpr std::string_view key = "Pixelsize:";
+constexpr double largest_pixel_nm = 1e6;
 
-// yaml-cpp recurses on nested flow collections, so brackets are counted before it sees them. Quotes and
-// comments are not told apart: that can only refuse what no sidecar holds.
-bool too_deep(const std::string& text) {
-  int depth = 0;
-  for (const char c : text) {
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
-    if (depth > deepest) return true;
-  }
-  return false;
-}
-
-// Indentation also nests: no sidecar is indented by more than a few levels.
-bool too_indented(const std::string& text) {
-  std::size_t blanks = 0;
-  std::size_t markers = 0;
-  bool at_start = true;
-  for (const char c : text) {
-    if (c == '\n') {
-      blanks = markers = 0;
-      at_start = true;
-    } else if (at_start && c == ' ') {
-      ++blanks;
-    } else if (at_start && (c == '-' || c == '?' || c == ':')) {
-      ++markers;
-    } else {
-      at_start = false;
-    }
-    if (blanks > 4 * deepest || markers > deepest) return true;
-  }
-  return false;
+std::optional<double> pixel_size_in(std::string_view line) {
+  if (line.substr(0, key.size()) != key) return std::nullopt;
+  line.remove_prefix(key.size());
+  line = line.substr(0, line.find(" #"));
+  const auto first = line.find_first_not_of(" \t");
+  if (first == std::string_view::npos || first == 0) return std::nullopt;
+  line = line.substr(first, line.find_last_not_of(" \t") - first + 1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+  const bool number = error == std::errc() && end == line.data() + line.size();
+  return number && value > 0 && value < largest_pixel_nm ? std::optional<double>(value) : std::nullopt;
 }
 
 }  // namespace
@@ -57,30 +34,10 @@ std::string picasso_sidecar_path(const std::string& hdf5_path) {
 std::optional<double> picasso_pixel_size_nm(const std::string& sidecar_path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(sidecar_path, error)) return std::nullopt;
-  if (std::filesystem::file_size(sidecar_path, error) > largest_bytes) {
-    throw Error(Fault::input, sidecar_path, "is larger than 16 MiB", "is it Picasso's?");
-  }
-  std::ifstream file(sidecar_path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (too_deep(text) || too_indented(text)) {
-    throw Error(Fault::input, sidecar_path, "is nested too deeply", "is it Picasso's?");
-  }
+  LineReader lines(sidecar_path);
   std::optional<double> pixel_size_nm;
-  try {
-    for (const YAML::Node& document : YAML::LoadAll(text)) {
-      if (!document.IsMap()) continue;
-      const YAML::Node value = document["Pixelsize"];
-      if (!value.IsDefined() || !value.IsScalar()) continue;
-      const std::string& number = value.Scalar();
-      double parsed = 0;
-      const auto [end, bad] = std::from_chars(number.data(), number.data() + number.size(), parsed);
-      if (bad == std::errc() && end == number.data() + number.size() && parsed > 0 && parsed < 1e6) {
-        pixel_size_nm = parsed;
-      }
-    }
-  } catch (const YAML::Exception& exception) {
-    throw Error(Fault::input, sidecar_path + ":" + std::to_string(exception.mark.line + 1), exception.msg,
-                "correct the file, or remove it and set input.pixel_size_nm");
+  for (std::string_view line; lines.next(line);) {
+    if (const auto found = pixel_size_in(line)) pixel_size_nm = found;
   }
   return pixel_size_nm;
 }

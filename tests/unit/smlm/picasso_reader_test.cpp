@@ -62,10 +62,15 @@ TEST_F(PicassoReader, WithoutPixelSizeTheOptionIsNamed) {
   EXPECT_THAT(test::error_of([&] { read_table(file, {}); }).what(), HasSubstr("input.pixel_size_nm"));
   write("f.yaml", "Width: 1\n");
   EXPECT_EQ(test::error_of([&] { read_table(file, {}); }).fault(), Fault::input);
-  write("f.yaml", "a: [b\n");
-  EXPECT_EQ(test::error_of([&] { read_table(file, {}); }).fault(), Fault::input);
-  write("f.yaml", std::string(100000, '['));
-  EXPECT_THAT(test::error_of([&] { read_table(file, {}); }).what(), HasSubstr("nested"));
+  // Nothing in a sidecar can nest, loop or expand, and only a top-level key counts.
+  for (const std::string& text :
+       {std::string("a] ]\nb&\n--"), std::string(100000, '['), std::string("a:\n  Pixelsize: 9\n"),
+        std::string("Camera.Pixelsize: 160\n"), std::string("Pixelsize: -1\nPixelsize: big\n")}) {
+    write("f.yaml", text);
+    EXPECT_THAT(test::error_of([&] { read_table(file, {}); }).what(), HasSubstr("holds no Pixelsize"));
+  }
+  write("f.yaml", "Width: 1\r\nPixelsize: 110.5 # nm\r\n");
+  EXPECT_NEAR(read_table(file, {}).position_nm[0][0], 110.5, 1e-6);
 }
 
 TEST_F(PicassoReader, AxialPrecisionInPixelsIsNoticed) {
