@@ -58,6 +58,7 @@ void draw_poses(const StartContext& context, const NoiseModel& noise, const Sear
 Hypothesis with_template(const StartContext& context, int centres, Hypothesis h) {
   h.mixture = scattered_mixture(context.problem, context.fitted, context.which, h.pose, centres,
                                 static_cast<std::uint64_t>(h.number));
+  h.mixture.outlier_fraction = first_outlier_fraction(h.crowded);
   return h;
 }
 
@@ -74,9 +75,10 @@ StartContext start_context(const Problem& problem) {
   return context;
 }
 
-Hypothesis random_start(const StartContext& context, int centres, int number) {
+Hypothesis random_start(const StartContext& context, int centres, int number, bool crowded) {
   Hypothesis h;
   h.name = "random " + std::to_string(number);
+  h.crowded = crowded;
   h.number = number;
   h.pose.resize(context.which.size());
   KeyedRandom random(context.problem.seed, static_cast<std::uint64_t>(number), kFirstPoseStage);
@@ -112,9 +114,8 @@ void anneal(const StartContext& context, const AnnealingOptions& options, bool k
                  kDrawStage + 16 * static_cast<std::uint32_t>(sweep + 1000 * h.number), h);
       refine_poses(h.mixture, data, h.pose, 3);
     }
-    MaximisationOptions em;
+    MaximisationOptions em = fusion_options(h.crowded, noise.width);
     em.seed = p.seed + key * 1000 + static_cast<std::uint64_t>(sweep);
-    em.reseed_distance = 0.5 * noise.width;
     for (int step = 0; step < options.maximisations; ++step) maximise(h.mixture, data, h.pose, em);
   }
   h.held_out = held_out_score(p, context.held_out, context.which, h.mixture, h.pose, options.last_width);

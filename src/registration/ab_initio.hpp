@@ -36,14 +36,15 @@ struct AnnealingOptions {
 /// A template and poses (template_from_view, one for each of context.which) under competition.
 struct Hypothesis {
   std::string name;
-  int number = 0;  // keys its random streams
+  int number = 0;        // keys its random streams
+  bool crowded = false;  // expects strands: many outliers at first, weak centres are sown anew
   Mixture mixture;
   std::vector<Pose> pose;
   double held_out = 0;  // mean log density per localisation that was not fitted
 };
 
 /// First poses and a template scattered over the localisations under them.
-Hypothesis random_start(const StartContext& context, int centres, int number);
+Hypothesis random_start(const StartContext& context, int centres, int number, bool crowded);
 Hypothesis imaged_start(const StartContext& context, int centres, int number);
 
 /// Anneals a hypothesis in place. `keep_first_poses`: the first sweep fits the template to the poses given.

@@ -9,13 +9,23 @@ namespace polar {
 
 namespace {
 
-double trimmed_mean(std::vector<double> v, double trim) {
-  if (v.empty()) return 0;
-  std::sort(v.begin(), v.end());
-  const auto cut = static_cast<std::size_t>(trim * static_cast<double>(v.size()));
-  double total = 0;
-  for (std::size_t i = cut; i < v.size() - cut; ++i) total += v[i];
-  return total / static_cast<double>(v.size() - 2 * cut);
+// Point of least summed distance (E. Weiszfeld, Tohoku Mathematical Journal 43, 1937): half of the
+// localisations may be strays before it leaves the structure.
+Eigen::Vector3d geometric_median(const std::vector<Eigen::Vector3d>& points) {
+  constexpr int kIterations = 30;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  if (points.empty()) return centre;
+  for (const Eigen::Vector3d& x : points) centre += x / static_cast<double>(points.size());
+  for (int i = 0; i < kIterations; ++i) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double weight = 0;
+    for (const Eigen::Vector3d& x : points) {
+      const double w = 1 / std::max(1e-9, (x - centre).norm());
+      sum += w * x, weight += w;
+    }
+    centre = sum / weight;
+  }
+  return centre;
 }
 
 double quantile(std::vector<double> v, double q) {
@@ -33,23 +43,20 @@ Views prepare_views(const smlm::ParticleSet& particles, const PrepareOptions& op
   views.planar = table.planar;
   std::vector<double> radii;
   for (const smlm::Particle& particle : particles.particles) {
-    Eigen::Vector3d centre;
-    for (std::size_t a = 0; a < 3; ++a) {
-      std::vector<double> v;
-      for (const std::uint32_t row : particle.rows) v.push_back(table.position_nm[row][a]);
-      centre[static_cast<Eigen::Index>(a)] = trimmed_mean(std::move(v), options.trim);
-    }
+    std::vector<Eigen::Vector3d> positions;
+    for (const std::uint32_t row : particle.rows)
+      positions.emplace_back(table.position_nm[row][0], table.position_nm[row][1], table.position_nm[row][2]);
+    const Eigen::Vector3d centre = geometric_median(positions);
     View view;
     view.points.resize(3, static_cast<Eigen::Index>(particle.rows.size()));
     std::vector<double> distance;
     for (std::size_t j = 0; j < particle.rows.size(); ++j) {
-      const auto& p = table.position_nm[particle.rows[j]];
-      const Eigen::Vector3d x = Eigen::Vector3d(p[0], p[1], p[2]) - centre;  // in double: fields are large
+      const Eigen::Vector3d x = positions[j] - centre;  // in double: fields are large
       view.points.col(static_cast<Eigen::Index>(j)) = x.cast<float>();
       view.covariance.push_back(table.covariance_nm2[particle.rows[j]]);
       distance.push_back(x.norm());
     }
-    if (!distance.empty()) radii.push_back(quantile(std::move(distance), options.radius_quantile));
+    if (!distance.empty()) radii.push_back(options.radius_factor * quantile(std::move(distance), 0.5));
     views.view.push_back(std::move(view));
     views.normalisation.centre_nm.push_back(centre);
   }

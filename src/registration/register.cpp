@@ -40,6 +40,52 @@ void warn_about_calibration(const Calibration& c, std::vector<std::string>& warn
   if (c.axial_factor != c.lateral_factor) warn("axial", c.axial_factor);
 }
 
+// Everything a run carries from stage to stage.
+struct Run {
+  Run(const Views& views, const RegistrationOptions& options, Progress& p)
+      : problem(make_problem(views, options.seed)), progress(p) {
+    out.view.resize(views.view.size());
+    if (options.search == "exhaustive") {
+      rounds.rotations = kExhaustiveRotations;
+      rounds.planar_rotations = kExhaustivePlanar;
+    }
+    grid = search_grid(views.planar ? rounds.planar_rotations : rounds.rotations, views.planar);
+    timed("grid");
+  }
+  void timed(const char* stage) { out.timings.push_back({stage, watch.lap()}); }
+
+  Problem problem;
+  Progress& progress;
+  Stopwatch watch;
+  RoundOptions rounds;
+  SearchGrid grid;
+  Registration out;
+};
+
+// From a registered template to the result.
+Registration from_state(Run& run, RoundState state) {
+  const Problem& problem = run.problem;
+  NoiseModel noise;
+  noise.planar = problem.planar();
+  noise.width = state.width;
+  noise = calibrate_and_fuse(problem, 3, noise, state);
+  run.timed("calibration");
+  noise = choose_centres(problem, noise, state);
+  run.timed("centres");
+  search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
+  noise = calibrate_and_fuse(problem, 1, noise, state);
+  run.timed("last search");
+  polish_all(problem, noise, state, run.out);
+  run.timed("polish");
+  Registration& out = run.out;
+  out.rounds = state.rounds;
+  out.converged = state.escaped <= run.rounds.settled * static_cast<double>(problem.size());
+  out.stopped_because = std::to_string(state.escaped) + " of " + std::to_string(problem.size()) +
+                        " views moved by more than 15 degrees in the last search";
+  warn_about_calibration(out.calibration, out.warnings);
+  return std::move(out);
+}
+
 }  // namespace
 
 std::vector<std::string> violations(const RegistrationOptions& options) {
@@ -57,54 +103,24 @@ std::vector<std::string> violations(const RegistrationOptions& options) {
 }
 
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {
-  Registration out;
-  out.view.resize(views.view.size());
-  Stopwatch watch;
-  const auto timed = [&](const char* stage) { out.timings.push_back({stage, watch.lap()}); };
-  const Problem problem = make_problem(views, options.seed);
-  RoundOptions rounds;
-  if (options.search == "exhaustive") {
-    rounds.rotations = kExhaustiveRotations;
-    rounds.planar_rotations = kExhaustivePlanar;
+  Run run(views, options, progress);
+  StartsOutcome starts = compete(run.problem, options.starts, run.grid, run.rounds, progress);
+  run.out.starts = starts.report;
+  run.timed("starts");
+  if (!starts.finished) {
+    run.out.stopped_because = "cancelled";
+    return std::move(run.out);
   }
-  const SearchGrid grid =
-      search_grid(views.planar ? rounds.planar_rotations : rounds.rotations, views.planar);
-  timed("grid");
+  return from_state(run, std::move(starts.winner));
+}
 
-  StartsOutcome starts = compete(problem, options.starts, progress);
-  out.starts = starts.report;
-  timed("starts");
-  if (progress.cancelled() || starts.winner.pose.empty()) {
-    out.stopped_because = "cancelled";
-    return out;
-  }
-
-  RoundState state;
-  state.mixture = starts.winner.mixture;
-  state.pose.resize(problem.size());
-  for (std::size_t k = 0; k < starts.which.size(); ++k)
-    state.pose[static_cast<std::size_t>(starts.which[k])] = starts.winner.pose[k];
-  run_rounds(problem, grid, rounds, progress, state);
-  timed("rounds");
-
-  NoiseModel noise;
-  noise.planar = views.planar;
-  noise.width = rounds.last_width;
-  noise = calibrate_and_fuse(problem, 3, noise, state);
-  timed("calibration");
-  noise = choose_centres(problem, noise, state);
-  timed("centres");
-  search_all(problem, grid, rounds, noise, state);
-  noise = calibrate_and_fuse(problem, 1, noise, state);
-  timed("last search");
-  polish_all(problem, noise, state, out);
-  timed("polish");
-  out.rounds = state.rounds;
-  out.converged = state.escaped <= rounds.settled * static_cast<double>(problem.size());
-  out.stopped_because = std::to_string(state.escaped) + " of " + std::to_string(problem.size()) +
-                        " views moved by more than 15 degrees in the last search";
-  warn_about_calibration(out.calibration, out.warnings);
-  return out;
+Registration register_from(const Views& views, const std::vector<Pose>& template_from_view,
+                           const RegistrationOptions& options, Progress& progress) {
+  Run run(views, options, progress);
+  RoundState state = state_at(run.problem, run.rounds, template_from_view);
+  run_rounds(run.problem, run.grid, run.rounds, progress, state);
+  run.timed("rounds");
+  return from_state(run, std::move(state));
 }
 
 }  // namespace polar

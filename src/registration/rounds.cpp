@@ -15,6 +15,19 @@ constexpr std::uint32_t kTurnStage = 31;
 constexpr double kLocalisationsPerCentre = 25;
 constexpr int kFewestCentres = 96, kMostCentres = 512;
 constexpr std::size_t kSweepLocalisations = 300;  // of a view while the template is still moving
+constexpr int kGivenSweeps = 8;
+
+void sweep(const Problem& problem, const Subsets& few, const NoiseModel& noise, int sweeps, int round,
+           RoundState& state) {
+  const FusionData data(problem.views, problem.axes, noise, few);
+  for (int s = 0; s < sweeps; ++s) {
+    MaximisationOptions em = fusion_options(state.crowded, noise.width);
+    em.seed = problem.seed + static_cast<std::uint64_t>(100 * round + s);
+    maximise(state.mixture, data, state.pose, em);
+    if (s > 0) refine_poses(state.mixture, data, state.pose, 2);
+  }
+}
+
 }  // namespace
 
 int centres_for(const Problem& problem) {
@@ -22,8 +35,22 @@ int centres_for(const Problem& problem) {
                     kMostCentres);
 }
 
+RoundState state_at(const Problem& problem, const RoundOptions& options,
+                    std::vector<Pose> template_from_view) {
+  RoundState state;
+  state.pose = std::move(template_from_view);
+  const Subsets few = first_of(problem.fitted, kSweepLocalisations);
+  state.mixture = scattered_mixture(problem, few, problem.all, state.pose, centres_for(problem), 1);
+  state.mixture.outlier_fraction = first_outlier_fraction(state.crowded);
+  NoiseModel noise;
+  noise.planar = problem.planar();
+  noise.width = options.first_width;
+  sweep(problem, few, noise, kGivenSweeps, 0, state);
+  return state;
+}
+
 void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptions& options, NoiseModel noise,
-                RoundState& state) {
+                const Subsets& subset, RoundState& state) {
   noise.width = std::max(noise.width, options.search_width);
   SearchAgainOptions search;
   search.basins = options.basins;
@@ -34,8 +61,8 @@ void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptio
   KeyedRandom turns(problem.seed, static_cast<std::uint64_t>(state.rounds), kTurnStage);
   const Eigen::Matrix3f turn = problem.planar() ? Eigen::Matrix3f(Eigen::Matrix3f::Identity())
                                                 : Eigen::Matrix3f(turns.rotation().cast<float>());
-  const SearchAgainReport report = search_again(problem.views, problem.axes, problem.shuffled, state.mixture,
-                                                noise, grid, turn, search, state.pose);
+  const SearchAgainReport report =
+      search_again(problem.views, problem.axes, subset, state.mixture, noise, grid, turn, search, state.pose);
   state.margin = report.margin;
   state.escaped = report.escaped;
 }
@@ -48,24 +75,28 @@ void run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptio
   NoiseModel noise;
   noise.planar = problem.planar();
   bool searching = true;
+  RoundState best;
   for (int round = 0; round < total && !progress.cancelled(); ++round, ++state.rounds) {
     noise.width = std::max(options.last_width, options.first_width * std::pow(options.narrowing, round));
     if (searching && round < options.most_searches) {
-      search_all(problem, grid, options, noise, state);
+      search_all(problem, grid, options, noise, problem.fitted, state);
       searching = round == 0 || state.escaped > options.settled * static_cast<double>(problem.size());
     }
-    if (round == 0)
+    if (round == 0) {
+      const double outliers = state.mixture.outlier_fraction;
       state.mixture = scattered_mixture(problem, few, problem.all, state.pose, centres_for(problem), 1);
-    const FusionData data(problem.views, problem.axes, noise, few);
-    for (int sweep = 0; sweep < options.sweeps; ++sweep) {
-      MaximisationOptions em;
-      em.seed = problem.seed + static_cast<std::uint64_t>(100 * round + sweep);
-      em.reseed_distance = 0.5 * noise.width;
-      maximise(state.mixture, data, state.pose, em);
-      if (sweep > 0) refine_poses(state.mixture, data, state.pose, 2);
+      state.mixture.outlier_fraction = std::max(outliers, first_outlier_fraction(state.crowded));
     }
+    sweep(problem, few, noise, options.sweeps, round, state);
+    state.width = noise.width;
+    state.held_out = held_out_score(problem, state.mixture, state.pose, noise);
+    if (state.held_out > best.held_out)
+      best = state;
+    else if (!searching)
+      break;
     progress.step("registering", round + 1, total);
   }
+  if (best.width > 0) state = std::move(best);
 }
 
 }  // namespace polar

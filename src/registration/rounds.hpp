@@ -28,6 +28,9 @@ struct RoundState {
   Mixture mixture;
   std::vector<Pose> pose;      // template_from_view, all views
   std::vector<double> margin;  // of the last search
+  bool crowded = true;         // template_tools.hpp
+  double width = 0;            // of the template after the last round kept
+  double held_out = -1e300;    // mean log density of the held-out localisations at that width
   int rounds = 0;
   int escaped = 0;  // in the last search
 };
@@ -35,11 +38,16 @@ struct RoundState {
 /// Number of centres for so many localisations: enough for a surface, few enough to be determined.
 int centres_for(const Problem& problem);
 
-/// One FLAMES over all views under the present template.
-void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptions& options, NoiseModel noise,
-                RoundState& state);
+/// A template fitted to poses that are given, at the first round's width.
+RoundState state_at(const Problem& problem, const RoundOptions& options,
+                    std::vector<Pose> template_from_view);
 
-/// From a template and poses of some views (identity for the others) to poses of all.
+/// One FLAMES over all views under the present template; looks at the first few of `subset` of each view.
+void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptions& options, NoiseModel noise,
+                const Subsets& subset, RoundState& state);
+
+/// From a template and poses of some views (identity for the others) to poses of all. Narrows as long as
+/// held-out localisations gain by it: few localisations end with a wide template.
 void run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,
                 Progress& progress, RoundState& state);
 

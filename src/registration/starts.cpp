@@ -10,52 +10,86 @@ constexpr int kFewestRandom = 3, kMostRandom = 12;
 constexpr double kLookUpBudget =
     3.0e9;  // over all random starts: seconds on two cores, whatever the size of the set
 constexpr int kFirstCentres = 160;
+constexpr int kMostFinalists = 5;
+constexpr double kFinalistLocalisations =
+    60000;  // views x localisations that the finalists may cost together
+
+double localisations(const StartContext& context) {
+  double total = 0;
+  for (const int i : context.which)
+    total += static_cast<double>(context.fitted[static_cast<std::size_t>(i)].size());
+  return total;
+}
 
 // Random starts are many where they are cheap, which is where localisations are few and a start often fails.
 int random_starts(const StartContext& context, const AnnealingOptions& options) {
-  double localisations = 0;
-  for (const int i : context.which)
-    localisations += static_cast<double>(context.fitted[static_cast<std::size_t>(i)].size());
-  const double look_ups = localisations * options.rotations * 7.0 * options.sweeps;
+  const double look_ups = localisations(context) * options.rotations * 7.0 * options.sweeps;
   return std::clamp(static_cast<int>(kLookUpBudget / std::max(1.0, look_ups)), kFewestRandom, kMostRandom);
 }
 
-void best_first(std::vector<Hypothesis>& hypotheses) {
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
+std::vector<Hypothesis> short_runs(const StartContext& context, const std::vector<std::string>& starts,
+                                   Progress& progress) {
+  const AnnealingOptions options;
+  const auto wanted = [&](const char* name) {
+    return std::find(starts.begin(), starts.end(), name) != starts.end();
+  };
+  const int random = wanted("random") ? random_starts(context, options) : 0;
+  const int total = random + (wanted("imaged") ? 1 : 0);
+  std::vector<Hypothesis> hypotheses;
+  for (int k = 0; k < total && !progress.cancelled(); ++k) {
+    if (k < random) {
+      hypotheses.push_back(random_start(context, kFirstCentres, k, k % 2 == 0));
+      anneal(context, options, false, hypotheses.back());
+    } else {
+      hypotheses.push_back(imaged_start(context, kFirstCentres, k));
+      AnnealingOptions gentle = options;  // the poses are meant to be near: begin narrower and colder
+      gentle.first_width = 0.2;
+      gentle.first_beta = 1;
+      gentle.sweeps = options.sweeps / 2;
+      anneal(context, gentle, true, hypotheses.back());
+    }
+    progress.step("starts", k + 1, total);
+  }
+  return hypotheses;
+}
+
+RoundState state_of(const Problem& problem, const StartContext& context, const Hypothesis& h) {
+  RoundState state;
+  state.mixture = h.mixture;
+  state.crowded = h.crowded;
+  state.pose.resize(problem.size());
+  for (std::size_t k = 0; k < context.which.size(); ++k)
+    state.pose[static_cast<std::size_t>(context.which[k])] = h.pose[k];
+  return state;
 }
 
 }  // namespace
 
-StartsOutcome compete(const Problem& problem, const std::vector<std::string>& starts, Progress& progress) {
+StartsOutcome compete(const Problem& problem, const std::vector<std::string>& starts, const SearchGrid& grid,
+                      const RoundOptions& rounds, Progress& progress) {
   const StartContext context = start_context(problem);
-  AnnealingOptions options;
-  std::vector<Hypothesis> hypotheses;
-  const bool random = std::find(starts.begin(), starts.end(), "random") != starts.end();
-  const bool imaged = std::find(starts.begin(), starts.end(), "imaged") != starts.end();
-  const int n = random ? random_starts(context, options) : 0;
-  const int total = n + (imaged ? 1 : 0);
-  for (int k = 0; k < n && !progress.cancelled(); ++k) {
-    hypotheses.push_back(random_start(context, kFirstCentres, k));
-    anneal(context, options, false, hypotheses.back());
-    progress.step("starts", k + 1, total);
-  }
-  if (imaged && !progress.cancelled()) {
-    hypotheses.push_back(imaged_start(context, kFirstCentres, n));
-    AnnealingOptions gentle = options;  // the poses are meant to be near: begin narrower and colder
-    gentle.first_width = 0.2;
-    gentle.first_beta = 1;
-    gentle.sweeps = options.sweeps / 2;
-    anneal(context, gentle, true, hypotheses.back());
-    progress.step("starts", total, total);
-  }
+  std::vector<Hypothesis> hypotheses = short_runs(context, starts, progress);
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
   StartsOutcome out;
-  out.which = context.which;
-  for (const Hypothesis& h : hypotheses) out.report.push_back({h.name, h.held_out, false});
-  if (hypotheses.empty()) return out;
-  best_first(hypotheses);
-  out.winner = hypotheses.front();
-  for (StartReport& r : out.report) r.won = r.name == out.winner.name;
+  for (const Hypothesis& h : hypotheses) out.report.push_back({h.name, h.held_out, 0, false});
+  const std::size_t finalists = std::min(
+      hypotheses.size(), static_cast<std::size_t>(std::clamp(
+                             static_cast<int>(kFinalistLocalisations / std::max(1.0, problem.localisations)),
+                             1, kMostFinalists)));
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < finalists && !progress.cancelled(); ++k) {
+    RoundState state = state_of(problem, context, hypotheses[k]);
+    run_rounds(problem, grid, rounds, progress, state);
+    out.report[k].final_held_out_log_likelihood = state.held_out;
+    if (k > 0 &&
+        out.report[k].final_held_out_log_likelihood <= out.report[best].final_held_out_log_likelihood)
+      continue;
+    best = k;
+    out.winner = std::move(state);
+    out.finished = true;
+  }
+  if (out.finished) out.report[best].won = true;
   return out;
 }
 

@@ -1,5 +1,6 @@
-// Starts are hypotheses, and they compete: short runs of each, the better half goes on, the best by the
-// likelihood of localisations that were kept out of the fusion wins.
+// Starts are hypotheses, and they compete: a short run of each on a few views, the best few are then
+// registered on all views, and the best of those by the likelihood of localisations that were kept out of the
+// fusion wins.
 #pragma once
 
 #include <string>
@@ -8,15 +9,17 @@
 #include "ab_initio.hpp"
 #include "polar/core/progress.hpp"
 #include "polar/registration/registration.hpp"
+#include "rounds.hpp"
 
 namespace polar {
 
 struct StartsOutcome {
-  Hypothesis winner;
-  std::vector<int> which;  // views its poses belong to
+  RoundState winner;  // registered on all views
   std::vector<StartReport> report;
+  bool finished = false;  // false: cancelled
 };
 
-StartsOutcome compete(const Problem& problem, const std::vector<std::string>& starts, Progress& progress);
+StartsOutcome compete(const Problem& problem, const std::vector<std::string>& starts, const SearchGrid& grid,
+                      const RoundOptions& rounds, Progress& progress);
 
 }  // namespace polar

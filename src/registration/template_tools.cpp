@@ -13,6 +13,15 @@ constexpr double kOutlierRadius = 1.5;  // particle radii: the ball (disc) of th
 constexpr double kPi = 3.14159265358979323846;
 }  // namespace
 
+double first_outlier_fraction(bool crowded) { return crowded ? 0.4 : 0.05; }
+
+MaximisationOptions fusion_options(bool crowded, double width) {
+  MaximisationOptions em;
+  em.reseed_distance = 0.5 * width;
+  em.weakest_share = crowded ? 0.3 : 0.05;
+  return em;
+}
+
 Mixture scattered_mixture(const Problem& problem, const Subsets& subsets, const std::vector<int>& which,
                           const std::vector<Pose>& pose, int centres, std::uint64_t key) {
   Mixture m;

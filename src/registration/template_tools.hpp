@@ -5,10 +5,16 @@
 #include <vector>
 
 #include "polar/core/pose.hpp"
+#include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/mixture.hpp"
 #include "problem.hpp"
 
 namespace polar {
+
+/// Two temperaments. Crowded: outliers such as strands are expected, so centres begin on what views share and
+/// weak ones are sown anew; else every centre is given time, which sparse particles need.
+double first_outlier_fraction(bool crowded);
+MaximisationOptions fusion_options(bool crowded, double width);
 
 /// `centres` centres of equal weight at localisations drawn from `subsets` of the views `which`, moved by
 /// `pose` (one for each of `which`).

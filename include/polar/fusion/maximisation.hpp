@@ -14,7 +14,7 @@ namespace polar {
 
 struct MaximisationOptions {
   bool free_weights = false;  // centres may weigh differently (discrete sites); else all equal
-  bool support = false;       // weigh a centre by the share of views that support it (against strands)
+  bool support = true;        // weigh a centre by the share of views that support it (against strands)
   double weakest_share =
       0.05;  // a centre with less than this share of the mean is sown anew beside a strong one
   double reseed_distance = 0.05;  // where, in template units

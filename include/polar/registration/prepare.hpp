@@ -8,9 +8,8 @@
 namespace polar {
 
 struct PrepareOptions {
-  double trim = 0.1;  // share left out at each end of an axis before the mean: the robust centre
-  double radius_quantile =
-      0.95;  // of a particle's distances from its centre; the scale is their median over particles
+  double radius_factor =
+      1.4;  // times the median distance from the centre is a particle's radius: robust to 49 % strays
 };
 
 /// One view a particle, in the same order, empty particles as empty views. Throws smlm::Error (input) when no

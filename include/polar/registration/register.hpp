@@ -24,4 +24,9 @@ std::vector<std::string> violations(const RegistrationOptions& options);
 /// Registers all views. Never throws for a bad view: that view is not accepted and says why.
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress);
 
+/// The same from poses that are given (template_from_view, one a view) instead of a competition of starts: to
+/// continue elsewhere, or to ask whether a true pose would have scored better than the found one.
+Registration register_from(const Views& views, const std::vector<Pose>& template_from_view,
+                           const RegistrationOptions& options, Progress& progress);
+
 }  // namespace polar

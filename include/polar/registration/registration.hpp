@@ -42,8 +42,11 @@ struct Calibration {
 };
 
 struct StartReport {
-  std::string name;                    // "random 3", "imaged", ...
-  double held_out_log_likelihood = 0;  // per localisation that was kept out of the fusion
+  std::string name;  // "random 3", "imaged", ...
+  double held_out_log_likelihood =
+      0;  // after the short run, per localisation that was kept out of the fusion
+  double final_held_out_log_likelihood =
+      0;  // after registering all views; 0 for those that did not get so far
   bool won = false;
 };
 
