@@ -1,0 +1,234 @@
+import fcntl
+import json
+import os
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import HEADER, POLAR, PolarCase
+
+SMALL = "simulation: {particles: 6, blinks_mean: 3, cramer_rao: false}"
+PORES = "simulation: {particles: 30, blinks_mean: 10, sigma_xy_nm: [2, 5], cramer_rao: true}"
+
+
+class Usage(PolarCase):
+    def test_version_and_help_go_to_stdout(self):
+        self.assertRegex(self.ok("--version"), r"^polar \d+\.\d+\.\d+ \(commit \w+\)$")
+        self.assertIn("evaluate", self.ok("--help"))
+
+    def test_wrong_usage_is_2(self):
+        self.fails(2, "polar --help")
+        self.fails(2, "polar --help", "fly")
+        self.fails(2, "polar --help", "run", "--fast")
+        self.fails(2, "no such file", "run", "none.yaml")
+        self.simulate(SMALL)
+        config = self.run_config()
+        self.fails(2, "excludes", "run", config, "--overwrite", "--resume")
+        self.fails(2, "threads", "run", config, "--threads", "-1")
+
+    def test_configuration_faults_name_key_and_line(self):
+        self.simulate(SMALL)
+        self.fails(2, "run.yaml:2: unknown key 'registration.serch': did you mean 'registration.search'?",
+                   "run", self.run_config(more="registration: {serch: fast}\n"))
+        self.fails(2, "did you mean 'registration.seed'", "run", self.run_config(), "--set", "registration.sed=1")
+        self.fails(2, "occurs twice", "run", self.run_config(more="output: {voxel_nm: 1, voxel_nm: 2}\n"))
+        self.fails(2, "registration.seed", "run", self.run_config(more="registration: {seed: -3}\n"))
+
+
+class BadInput(PolarCase):
+    def refused(self, content, part, more=""):
+        self.write("table.csv", content)
+        self.fails(3, part, "run", self.run_config("table.csv", more))
+        self.assertFalse((self.folder / "results" / "poses.csv").exists())
+
+    def test_tables_that_hold_nothing(self):
+        self.refused("", "table.csv")
+        self.refused(HEADER, "table.csv")
+        self.refused(HEADER + "1,2,3,1,1,1,a\n", "1 particle")
+
+    def test_numbers_that_are_none(self):
+        good = "1,2,3,1,1,1,a\n4,5,6,1,1,1,b\n"
+        self.refused(HEADER + good + "nan,2,3,1,1,1,a\n", "table.csv:4")
+        self.refused(HEADER + good + "1.2abc,2,3,1,1,1,a\n", "table.csv:4")
+        self.refused(HEADER + good + "1,2,3,0,1,1,a\n", "table.csv:4")
+        self.refused(HEADER + good + "1,2,3\n", "table.csv:4")
+
+    def test_files_that_are_no_tables(self):
+        self.refused(bytes(range(256)) * 64, "table.csv")
+        self.refused(b"\x89HDF\r\n\x1a\n" + b"\0" * 100, "table.csv")
+        (self.folder / "folder.csv").mkdir()
+        self.fails(3, "folder.csv", "run", self.run_config("folder.csv"))
+        self.fails(3, "no such file", "run", self.run_config("missing/*.csv"))
+
+    def test_evaluate_names_the_file(self):
+        self.write("a.csv", "x,y\n1,2\n")
+        self.fails(3, "a.csv:1", "evaluate", "a.csv", "--truth", "a.csv")
+        self.fails(3, "none.csv", "evaluate", "none.csv", "--truth", "a.csv")
+        data = self.simulate(SMALL)
+        self.fails(2, "rotation group", "evaluate", data, "--truth", data / "poses.csv", "--symmetry", "C0")
+
+    def test_export_needs_a_record(self):
+        self.fails(4, "results.h5", "export", "results.h5", "--format", "csv")
+        self.write("results.h5", "not HDF5")
+        self.fails(3, "results.h5", "export", "results.h5", "--format", "csv")
+        self.fails(2, "--format", "export", "results.h5", "--format", "jpeg")
+
+    def test_memory_limit_is_6(self):
+        config = self.write("big.yaml", "simulation: {particles: 20000, sampling: points, points: 20000}\n")
+
+        def limited():
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+        self.fails(6, "memory", "simulate", config, preexec_fn=limited)
+
+
+class Outputs(PolarCase):
+    def test_directory_faults_come_before_computing(self):
+        self.simulate(SMALL)
+        config = self.run_config()
+        self.write("results", "a file")
+        self.fails(4, "not a directory", "run", config)
+        (self.folder / "results").unlink()
+        self.write("results/mine.txt", "x")
+        self.fails(4, "--overwrite or --resume", "run", config)
+
+    def test_second_process_is_refused(self):
+        self.simulate(SMALL)
+        lock = self.write("results/.polar.lock", "")
+        with open(lock, "w") as held:
+            fcntl.flock(held, fcntl.LOCK_EX)
+            self.fails(4, "another process", "run", self.run_config())
+
+    def test_complete_directory_resume_export(self):
+        self.simulate(SMALL)
+        config = self.run_config()
+        stdout = self.ok("run", config)
+        self.assertIn("accepted", stdout)
+        results = self.folder / "results"
+        names = {p.name for p in results.iterdir()}
+        self.assertEqual(names, {"poses.csv", "results.h5", "aligned.hdf", "template.hdf", "aligned.csv",
+                                 "preview.png", "summary.json"})
+        summary = json.loads((results / "summary.json").read_text())
+        self.assertEqual(summary["particles"], 6)
+        before = (results / "poses.csv").stat().st_mtime_ns
+        self.assertIn("complete already", self.ok("run", config, "--resume"))
+        self.assertEqual((results / "poses.csv").stat().st_mtime_ns, before)
+        self.fails(3, "another input or configuration", "run", config, "--resume", "--set", "registration.seed=2")
+        (self.folder / "again").mkdir()
+        self.ok("export", results, "--format", "csv,vtkhdf,png", "--output", "again")
+        for name in ("aligned.csv", "aligned.hdf", "template.hdf", "preview.png"):
+            self.assertEqual((self.folder / "again" / name).read_bytes(), (results / name).read_bytes(), name)
+
+    def test_logs(self):
+        self.simulate(SMALL)
+        done = self.polar("run", self.run_config(), "--quiet")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        done = self.polar("run", self.run_config(), "--overwrite", "--json-log")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = [json.loads(line) for line in done.stderr.splitlines()]
+        self.assertTrue(any(line["event"] == "progress" and line["done"] <= line["total"] for line in lines))
+
+
+class Signals(PolarCase):
+    def stop(self, number):
+        process = subprocess.Popen([POLAR, "run", "run.yaml", "--overwrite"], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        lock = self.folder / "results" / ".polar.lock"
+        for _ in range(200):
+            if lock.exists():
+                break
+            time.sleep(0.05)
+        time.sleep(1)  # inside the registration
+        process.send_signal(number)
+        self.assertEqual(process.wait(timeout=120), 128 + number)
+        process.communicate()
+        self.assertEqual(list((self.folder / "results").iterdir()), [])
+
+    def test_signals_end_cleanly(self):
+        self.simulate("simulation: {particles: 150, blinks_mean: 20, cramer_rao: false}")
+        self.run_config()
+        self.stop(signal.SIGTERM)
+        self.stop(signal.SIGINT)
+
+
+class Recall(PolarCase):
+    def test_pores_in_any_orientation(self):
+        data = self.simulate(PORES)
+        self.ok("run", self.run_config())
+        recall, report = self.recall("results", data / "poses.csv", 10)
+        self.assertEqual(report["symmetry"], "D8")
+        self.assertGreaterEqual(recall, 0.9)
+        # Half again above the bound that no unbiased estimator beats, and not below it by luck or by leak.
+        bound = report["cramer_rao_pair_median_deg"]
+        self.assertGreater(report["median_pair_deg"], 0.7 * bound)
+        self.assertLess(report["median_pair_deg"], 2.5 * bound)
+        self.assertLess(report["median_translation_nm"], 3)
+
+    def test_tetrahedra(self):
+        data = self.simulate("structure: {kind: tetrahedron}\n"
+                             "simulation: {particles: 30, blinks_mean: 15, sigma_xy_nm: [3, 6],"
+                             " labelling_efficiency: 1}")  # two of four sites do not tell an orientation
+        self.ok("run", self.run_config())
+        self.assertGreaterEqual(self.recall("results", data / "poses.csv", 10)[0], 0.9)
+
+    def test_planar_rings(self):
+        data = self.simulate("structure: {kind: nuclear_pore}\n"
+                             "simulation: {particles: 30, planar: true, orientation: in_plane, blinks_mean: 6}")
+        self.ok("run", self.run_config())
+        self.assertGreaterEqual(self.recall("results", data / "poses.csv", 10)[0], 0.9)
+
+    def test_wrong_poses_are_told_apart(self):
+        data = self.simulate(PORES)
+        other = self.simulate(PORES.replace("30,", "30, seed: 2,"), "other")
+        recall, _ = self.recall(other, data / "poses.csv", 10)
+        self.assertLess(recall, 0.1)
+
+
+class Determinism(PolarCase):
+    def test_same_bits_for_any_number_of_threads_and_any_locale(self):
+        self.simulate("simulation: {particles: 12, blinks_mean: 6, cramer_rao: false}")
+        config = self.run_config()
+        kept = ("poses.csv", "aligned.csv", "aligned.hdf", "template.hdf", "preview.png")
+        first = None
+        for threads, locale in (("1", "C"), ("2", "de_DE.UTF-8"), ("4", "tr_TR.UTF-8")):
+            self.ok("run", config, "--overwrite", "--threads", threads, env={"LC_ALL": locale})
+            content = {name: (self.folder / "results" / name).read_bytes() for name in kept}
+            first = first or content
+            for name in kept:
+                self.assertEqual(content[name], first[name], f"{name} with {threads} threads")
+        self.ok("run", config, "--overwrite", "--set", "registration.seed=2")
+        self.assertNotEqual((self.folder / "results" / "poses.csv").read_bytes(), first["poses.csv"])
+
+
+class ParaView(PolarCase):
+    SCRIPT = """
+import json, sys
+from paraview.simple import OpenDataFile
+out = {}
+for name in ("aligned", "template"):
+    reader = OpenDataFile("results/" + name + ".hdf")
+    reader.UpdatePipeline()
+    info = reader.GetDataInformation()
+    arrays = info.GetPointDataInformation()
+    out[name] = [info.GetNumberOfPoints(),
+                 [arrays.GetArrayInformation(i).GetName() for i in range(arrays.GetNumberOfArrays())]]
+print(json.dumps(out))
+"""
+
+    def test_both_files_load(self):
+        self.simulate(SMALL)
+        self.ok("run", self.run_config())
+        script = self.write("load.py", self.SCRIPT)
+        done = subprocess.run([os.environ["PVPYTHON"], str(script)], cwd=self.folder, capture_output=True, text=True,
+                              timeout=240)
+        loaded = json.loads(done.stdout.splitlines()[-1])
+        rows = len((self.folder / "results" / "aligned.csv").read_text().splitlines()) - 1
+        self.assertEqual(loaded["aligned"][0], rows)
+        self.assertIn("sigma_z_nm", loaded["aligned"][1])
+        self.assertIn("intensity [photon]", loaded["aligned"][1])
+        self.assertEqual(loaded["template"][1], ["density"])
+
+
+if __name__ == "__main__":
+    unittest.main()
