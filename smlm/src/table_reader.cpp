@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "concatenate.hpp"
+#include "isolation.hpp"
 #include "mat_v5.hpp"
 #include "readers/readers.hpp"
 #include "smlm/error.hpp"
@@ -24,6 +25,11 @@ std::string known_formats() {
   for (const TableReader& reader : table_readers())
     names += (names.empty() ? "" : ", ") + std::string(reader.name);
   return names;
+}
+
+// Whether a library with pointers of its own will walk through the file.
+bool needs_library(const FileHead& head) {
+  return head.hdf5 || is_mat_v5(head.bytes) || head.bytes.compare(0, 4, "PK\x03\x04") == 0;
 }
 
 // Formats that are recognised only to say what to do with them.
@@ -113,7 +119,12 @@ LocalisationTable read_tables(const std::vector<std::string>& files, const ReadO
   }
   Concatenation all(files, options);
   for (const std::string& file : files) {
-    const TableReader& reader = find_reader(read_head(file), options);
+    const FileHead head = read_head(file);
+    if (needs_library(head)) {
+      require_survival(
+          file, [&] { find_reader(head, options).read(file, options); }, reading_limits(file));
+    }
+    const TableReader& reader = find_reader(head, options);
     LocalisationTable table = reader.read(file, options);
     table.formats.assign(1, std::string(reader.name));
     if (picked) {
