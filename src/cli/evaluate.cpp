@@ -60,7 +60,8 @@ int run(const Arguments& a) {
   CompareOptions options;
   options.angles_deg = a.angles_deg;
   options.symmetry = !a.symmetry.empty() ? a.symmetry : simulated ? summary.symmetry : "none";
-  const Comparison c = compare_poses(read_pose_table(poses), read_pose_table(a.truth), options);
+  const std::vector<PoseRow> estimate = read_pose_table(poses);
+  const Comparison c = compare_poses(estimate, read_pose_table(a.truth), options);
   if (a.json)
     std::printf("%s\n", as_json(c, options.symmetry, summary.cramer_rao_pair_median_deg).dump(2).c_str());
   else

@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   polar::cli::add_simulate(app, action);
   polar::cli::add_export(app, action);
   polar::cli::add_evaluate(app, action);
+  polar::cli::add_inspect(app, action);
   polar::cli::add_train(app, action);
   try {
     app.parse(argc, argv);

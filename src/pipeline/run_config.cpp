@@ -1,9 +1,8 @@
 #include "polar/pipeline/run_config.hpp"
 
-#include <algorithm>
-
 #include "config/fields.hpp"
 #include "config/paths.hpp"
+#include "polar/results/symmetry_group.hpp"
 #include "smlm/error.hpp"
 
 namespace polar {
@@ -45,18 +44,31 @@ void fields(Visitor& v, RunConfig& c) {
   });
 }
 
+// Empty when it can be imposed, or is to be detected.
+std::string symmetry_fault(const std::string& symmetry) {
+  if (symmetry == "detect") return {};
+  try {
+    symmetry_rotations(symmetry);
+    return {};
+  } catch (const smlm::Error& e) {
+    return e.what();
+  }
+}
+
 void check(const RunConfig& c, const std::string& path) {
   std::vector<std::string> faults;
   if (c.files.empty()) faults.emplace_back("input.files is missing: list the localisation tables");
-  for (const std::string& fault : violations(c.read)) faults.push_back("input." + fault);
-  for (const std::string& fault : violations(c.registration)) faults.push_back("registration: " + fault);
+  for (const std::string& v : violations(c.read)) faults.push_back("input." + v);
+  for (const std::string& v : violations(c.registration)) faults.push_back("registration: " + v);
+  const std::string fault = symmetry_fault(c.registration.symmetry);
+  if (!fault.empty()) faults.push_back("registration." + fault);
   for (const std::string& format : c.output.formats)
     if (format != "hdf5" && format != "vtkhdf" && format != "csv")
       faults.push_back("output.formats holds '" + format + "', expected hdf5, vtkhdf or csv");
   if (!(c.output.voxel_nm >= 0)) faults.emplace_back("output.voxel_nm must be 0 or more");
   if (c.output.directory.empty()) faults.emplace_back("output.directory is empty");
   std::string all;
-  for (const std::string& fault : faults) all += (all.empty() ? "" : "; ") + fault;
+  for (const std::string& f : faults) all += (all.empty() ? "" : "; ") + f;
   if (!all.empty()) throw smlm::Error(smlm::Fault::usage, path, all);
 }
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "polar/results/picasso.hpp"
 #include "polar/results/pose_table.hpp"
 #include "polar/results/table_csv.hpp"
 #include "polar/simulation/cramer_rao.hpp"
@@ -51,6 +52,22 @@ std::string observable_symmetry(const Structure& structure, bool planar) {
   return planar && structure.symmetry[0] == 'D' ? "C" + structure.symmetry.substr(1) : structure.symmetry;
 }
 
+// The configuration as it can be handed on: without where it was run.
+std::string portable_text(SimulateConfig config) {
+  config.directory = std::filesystem::path(config.directory).filename().string();
+  config.file.path = std::filesystem::path(config.file.path).filename().string();
+  return simulate_config_text(config);
+}
+
+// Moves the table, and the true poses with it.
+void shift(Simulation& s, const std::array<double, 2>& by_nm) {
+  for (auto& x : s.table.position_nm)
+    for (std::size_t axis = 0; axis < 2; ++axis) x[axis] += by_nm[axis];
+  for (SimulatedParticle& p : s.particle)
+    p.structure_from_view.translation -=
+        p.structure_from_view.rotation * Eigen::Vector3d(by_nm[0], by_nm[1], 0);
+}
+
 void prepare_directory(const SimulateConfig& config, bool overwrite) {
   std::error_code ec;
   std::filesystem::create_directories(config.directory, ec);
@@ -67,7 +84,7 @@ std::vector<std::string> run_simulation(const SimulateConfig& config, bool overw
   prepare_directory(config, overwrite);
   const Structure structure =
       config.structure.kind == "file" ? read_structure(config.file) : make_structure(config.structure);
-  const Simulation s = simulate(structure, config.simulation);
+  Simulation s = simulate(structure, config.simulation);
   const std::string folder = config.directory + "/";
   TruthSummary truth{structure.name, observable_symmetry(structure, config.simulation.planar),
                      std::numeric_limits<double>::quiet_NaN()};
@@ -79,11 +96,16 @@ std::vector<std::string> run_simulation(const SimulateConfig& config, bool overw
   const nlohmann::json summary = {{"structure", truth.structure},
                                   {"symmetry", truth.symmetry},
                                   {"cramer_rao_pair_median_deg", truth.cramer_rao_pair_median_deg}};
-  smlm::write_file_atomically(folder + "localisations.csv", format_table_csv(s.table));
+  if (config.format == "picasso") {
+    shift(s, picasso_shift_nm(s.table));
+    write_picasso(folder + "localisations.hdf5", s.table);
+  } else {
+    smlm::write_file_atomically(folder + "localisations.csv", format_table_csv(s.table));
+  }
   smlm::write_file_atomically(folder + "poses.csv",
                               format_pose_table(true_poses(s, config.simulation.cramer_rao)));
   smlm::write_file_atomically(folder + "sites.csv", sites_text(structure));
-  smlm::write_file_atomically(folder + "simulation.yaml", simulate_config_text(config));
+  smlm::write_file_atomically(folder + "simulation.yaml", portable_text(config));
   smlm::write_file_atomically(folder + kTruthFile, summary.dump(2) + "\n");
 
   std::vector<std::string> lines = {std::to_string(s.particle.size()) + " particles of " + structure.name +

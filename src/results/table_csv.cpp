@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "csv_line.hpp"
+#include "heading.hpp"
 
 namespace polar {
 
@@ -39,8 +40,7 @@ std::string header(const smlm::LocalisationTable& table, bool is_diagonal) {
     text += is_diagonal ? "uncertainty_" + name.substr(1) + " [nm]," : "sigma_" + name + " [nm^2],";
   }
   text += "particle";
-  for (const smlm::ExtraColumn& c : table.extra)
-    text += "," + results::csv_field(c.unit.empty() ? c.name : c.name + " [" + c.unit + "]");
+  for (const smlm::ExtraColumn& c : table.extra) text += "," + results::csv_field(results::heading(c));
   return text + "\n";
 }
 

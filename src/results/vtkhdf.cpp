@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 
+#include "heading.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/h5/file.hpp"
 
@@ -50,8 +51,7 @@ void write_point_data(File& file, const smlm::LocalisationTable& table) {
              std::vector<std::int32_t>(table.source_file.begin(), table.source_file.end()));
   file.write(link_name("source_row", used),
              std::vector<std::int64_t>(table.source_row.begin(), table.source_row.end()));
-  for (const smlm::ExtraColumn& c : table.extra)
-    file.write(link_name(c.unit.empty() ? c.name : c.name + " [" + c.unit + "]", used), c.values);
+  for (const smlm::ExtraColumn& c : table.extra) file.write(link_name(results::heading(c), used), c.values);
 }
 }  // namespace
 

@@ -1,0 +1,24 @@
+// Picasso's localisation files: NAME.hdf5 with the compound /locs, and NAME.yaml beside it.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "smlm/localisation_table.hpp"
+
+namespace polar {
+
+/// Picasso's camera pixel that lengths are written in, nm.
+constexpr double kPicassoPixel_nm = 130;
+
+/// What must be added to x and y so that no localisation lies outside the image: Picasso drops negative
+/// coordinates without a word. Zero where none is.
+std::array<double, 2> picasso_shift_nm(const smlm::LocalisationTable& table);
+
+/// Writes path (.hdf5) and its .yaml. x, y, lpx, lpy in pixels, z and lpz in nm, `group` the particle: its
+/// name where all names are whole numbers, else its index. Frame and photons come from columns of these names
+/// where the table has them; what Picasso wants beyond that (sx, sy, bg) is 1, 1, 0. Coordinates are written
+/// as they are: see picasso_shift_nm.
+void write_picasso(const std::string& path, const smlm::LocalisationTable& table);
+
+}  // namespace polar

@@ -1,0 +1,57 @@
+#include "smlm/inspect.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include "command.hpp"
+#include "polar/pipeline/run_config.hpp"
+#include "smlm/table_reader.hpp"
+
+namespace polar::cli {
+
+namespace {
+struct Arguments {
+  std::vector<std::string> files, overrides;
+  smlm::ReadOptions read;
+  bool json = false;
+};
+
+bool is_configuration(const std::string& file) {
+  const auto ends_with = [&](const std::string& end) {
+    return file.size() > end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
+  };
+  return ends_with(".yaml") || ends_with(".yml");
+}
+
+int run(const Arguments& a) {
+  std::vector<std::string> files = a.files;
+  smlm::ReadOptions read = a.read;
+  if (files.size() == 1 && is_configuration(files[0])) {
+    const RunConfig config = load_run_config(files[0], a.overrides);
+    files = config.files;
+    read = config.read;
+  }
+  const smlm::Inspection inspection = smlm::inspect(smlm::read_tables(files, read));
+  std::printf("%s\n", (a.json ? smlm::to_json(inspection) : smlm::to_text(inspection)).c_str());
+  return 0;
+}
+}  // namespace
+
+void add_inspect(CLI::App& app, Action& action) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* sub =
+      app.add_subcommand("inspect", "Show how tables are read: columns, units, particles, uncertainties");
+  sub->add_option("files", a->files,
+                  "tables, or one run configuration whose input section says how to read them")
+      ->required();
+  sub->add_option("--set", a->overrides, "section.key=value, wins over the configuration");
+  sub->add_option("--format", a->read.format, "reader; default: by content");
+  sub->add_option("--pixel-size-nm", a->read.pixel_size_nm, "camera pixel, nm");
+  sub->add_flag("--one-per-file", "every file is a particle")->each([a](const std::string&) {
+    a->read.particles = "one_per_file";
+  });
+  sub->add_flag("--json", a->json, "print JSON");
+  sub->callback([a, &action] { action = [a] { return run(*a); }; });
+}
+
+}  // namespace polar::cli

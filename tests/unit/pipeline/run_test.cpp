@@ -1,0 +1,234 @@
+#include "polar/pipeline/run.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "polar/pipeline/simulate_run.hpp"
+#include "polar/results/compare.hpp"
+#include "polar/results/pose_table.hpp"
+#include "smlm/error.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace polar {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Stands in for the engine: every view accepted where its centre of mass already is.
+Registration stay(const Views& views, const RegistrationOptions&, Progress&) {
+  Registration r;
+  r.view.resize(views.view.size());
+  for (std::size_t i = 0; i < views.view.size(); ++i) {
+    r.view[i].accepted = true;
+    r.view[i].reason.clear();
+    r.view[i].n_used = static_cast<int>(views.view[i].points.cols());
+    r.view[i].template_from_view.translation = Eigen::Vector3d::Zero();
+  }
+  r.fused.centre = Eigen::Matrix3Xd::Zero(3, 1);
+  r.fused.weight = Eigen::VectorXd::Ones(1);
+  r.stopped_because = "it is a stand-in";
+  return r;
+}
+
+class Cancelling : public Progress {
+ public:
+  bool cancelled() const override { return true; }
+};
+
+class Run : public ::testing::Test {
+ protected:
+  Run() {
+    SimulateConfig simulation;
+    simulation.simulation.particles = 4;
+    simulation.simulation.orientation = "identity";
+    simulation.simulation.cramer_rao = false;
+    simulation.directory = directory_.path("data");
+    run_simulation(simulation, false);
+    write_config("input:\n  files: data/localisations.csv\n");
+  }
+  void write_config(const std::string& text) { std::ofstream(directory_.path("run.yaml")) << text; }
+  RunConfig config() { return load_run_config(directory_.path("run.yaml"), {}); }
+  std::string out(const std::string& name = {}) {
+    return directory_.path("results") + (name.empty() ? "" : "/" + name);
+  }
+  int fault(const RunFlags& flags, const Engine& engine = stay) {
+    try {
+      run(config(), flags, progress_, engine);
+    } catch (const smlm::Error& e) {
+      message_ = e.what();
+      return e.exit_code();
+    }
+    return 0;
+  }
+  static std::string content(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  support::TemporaryDirectory directory_;
+  Progress progress_;
+  std::string message_;
+};
+
+TEST_F(Run, WritesACompleteDirectory) {
+  ASSERT_EQ(fault({}), 0);
+  for (const char* name : {"poses.csv", "results.h5", "aligned.hdf", "template.hdf", "aligned.csv",
+                           "preview.png", "summary.json"})
+    EXPECT_TRUE(std::filesystem::is_regular_file(out(name))) << name;
+  EXPECT_FALSE(std::filesystem::exists(out(".polar.lock")));
+  const std::vector<PoseRow> poses = read_pose_table(out("poses.csv"));
+  ASSERT_EQ(poses.size(), 4u);
+  EXPECT_TRUE(poses[3].accepted);
+  // Unturned particles that stay have no rotation error at all against the truth.
+  EXPECT_LT(compare_poses(poses, read_pose_table(directory_.path("data/poses.csv")), {}).median_pair_deg,
+            1e-6);
+}
+
+TEST_F(Run, RefusesWhatIsThereUnlessTold) {
+  ASSERT_EQ(fault({}), 0);
+  EXPECT_EQ(fault({}), 4);
+  EXPECT_THAT(message_, HasSubstr("--overwrite or --resume"));
+  EXPECT_EQ(fault({true, false}), 0);
+}
+
+TEST_F(Run, ResumeKeepsACompleteResultOfTheSameInput) {
+  ASSERT_EQ(fault({}), 0);
+  const Engine must_not_run = [](const Views&, const RegistrationOptions&, Progress&) -> Registration {
+    throw std::logic_error("computed again");
+  };
+  EXPECT_EQ(fault({false, true}, must_not_run), 0);
+  std::ofstream(directory_.path("data/localisations.csv"), std::ios::app) << "1,1,1,1,1,1,1,1,1,1\n";
+  EXPECT_EQ(fault({false, true}, must_not_run), 3);
+  EXPECT_THAT(message_, HasSubstr("another input"));
+}
+
+TEST_F(Run, ResumeComputesWhatIsIncomplete) {
+  ASSERT_EQ(fault({}), 0);
+  std::filesystem::remove(out("summary.json"));
+  EXPECT_EQ(fault({false, true}), 0);
+  EXPECT_TRUE(std::filesystem::exists(out("summary.json")));
+}
+
+TEST_F(Run, OverwriteLeavesNothingOfTheEarlierRun) {
+  ASSERT_EQ(fault({}), 0);
+  std::ofstream(out("mine.txt")) << "kept";
+  write_config("input: {files: data/localisations.csv}\noutput: {formats: [csv], preview: false}\n");
+  ASSERT_EQ(fault({true, false}), 0);
+  EXPECT_FALSE(std::filesystem::exists(out("results.h5")));
+  EXPECT_TRUE(std::filesystem::exists(out("aligned.csv")));
+  EXPECT_TRUE(std::filesystem::exists(out("mine.txt")));
+}
+
+TEST_F(Run, CancelledRunsWriteNothing) {
+  Cancelling cancelling;
+  EXPECT_TRUE(run(config(), {}, cancelling, stay).cancelled);
+  EXPECT_TRUE(std::filesystem::is_empty(out()));
+}
+
+TEST_F(Run, NothingRegisteredIsNumericalAndWritesNothing) {
+  const Engine none = [](const Views& views, const RegistrationOptions& o, Progress& p) {
+    Registration r = stay(views, o, p);
+    for (RegisteredView& v : r.view) {
+      v.accepted = false;
+      v.reason = "too few localisations";
+    }
+    return r;
+  };
+  EXPECT_EQ(fault({}, none), 5);
+  EXPECT_THAT(message_, HasSubstr("too few localisations"));
+  EXPECT_TRUE(std::filesystem::is_empty(out()));
+}
+
+TEST_F(Run, UnusableOutputDirectoriesFailBeforeComputing) {
+  const Engine must_not_run = [](const Views&, const RegistrationOptions&, Progress&) -> Registration {
+    throw std::logic_error("computed");
+  };
+  std::ofstream(directory_.path("results")) << "a file";
+  EXPECT_EQ(fault({}, must_not_run), 4);
+  EXPECT_THAT(message_, HasSubstr("not a directory"));
+  std::filesystem::remove(directory_.path("results"));
+  std::filesystem::create_directory(out());
+  const int lock = ::open(out(".polar.lock").c_str(), O_RDWR | O_CREAT, 0666);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  EXPECT_EQ(fault({}, must_not_run), 4);
+  EXPECT_THAT(message_, HasSubstr("another process"));
+  ::close(lock);  // as when that process dies: its lock file stays, and means nothing
+  EXPECT_EQ(fault({}), 0);
+}
+
+TEST_F(Run, TooFewParticlesAreAnInputFault) {
+  std::ofstream(directory_.path("data/localisations.csv"))
+      << "x [nm],y [nm],z [nm],uncertainty_x [nm],uncertainty_y [nm],uncertainty_z [nm],particle\n"
+         "1,2,3,1,1,1,a\n2,3,1,1,1,1,a\n";
+  EXPECT_EQ(fault({}), 3);
+  EXPECT_THAT(message_, HasSubstr("1 particle"));
+}
+
+TEST_F(Run, ConfigurationFaults) {
+  const auto code = [&](const std::string& text) {
+    write_config(text);
+    try {
+      config();
+    } catch (const smlm::Error& e) {
+      message_ = e.what();
+      return e.exit_code();
+    }
+    return 0;
+  };
+  EXPECT_EQ(code("input: {}\n"), 2);
+  EXPECT_THAT(message_, HasSubstr("input.files is missing"));
+  EXPECT_EQ(code("input: {files: none.csv}\n"), 3);
+  EXPECT_THAT(message_, HasSubstr("none.csv"));
+  EXPECT_EQ(code("input: {files: [data/localisations.csv, data/local*.csv]}\n"), 2);
+  EXPECT_THAT(message_, HasSubstr("listed twice"));
+  EXPECT_EQ(code("input: {files: data/*.csv, format: cvs}\n"), 2);
+  EXPECT_EQ(code("input: {files: data/*.csv}\nregistration: {symetry: C8}\n"), 2);
+  EXPECT_THAT(message_, HasSubstr("did you mean 'registration.symmetry'?"));
+  EXPECT_EQ(code("input: {files: data/*.csv}\nregistration: {symmetry: C8x}\n"), 2);
+  EXPECT_EQ(code("input: {files: data/*.csv}\nregistration: {search: slow}\n"), 2);
+  EXPECT_EQ(code("input: {files: data/*.csv}\noutput: {formats: [hdf6]}\n"), 2);
+  EXPECT_EQ(code("input: {files: data/*.csv, columns: {x: {name: a, unit: px, knd: std}}}\n"), 2);
+  EXPECT_THAT(message_, HasSubstr("did you mean 'input.columns.x.kind'?"));
+}
+
+TEST_F(Run, DefaultFileEqualsTheStructs) {
+  std::ifstream in(POLAR_SOURCE_DIR "/configs/default.yaml");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string none = "files: []";
+  ASSERT_NE(text.find(none), std::string::npos);
+  text.replace(text.find(none), none.size(), "files: [data/localisations.csv]");
+  write_config(text);
+  const std::string shipped = run_config_text(config());
+  write_config("input: {files: [data/localisations.csv]}\n");
+  EXPECT_EQ(shipped, run_config_text(config()));
+  // The shipped file holds every key: as many "key:" lines as the effective configuration.
+  const auto keys = [](const std::string& yaml) {
+    std::vector<std::string> found;
+    std::istringstream lines(yaml);
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t begin = line.find_first_not_of(' '), colon = line.find(':');
+      if (begin != std::string::npos && line[begin] != '#' && colon != std::string::npos)
+        found.push_back(line.substr(0, colon));
+    }
+    return found;
+  };
+  EXPECT_EQ(keys(text), keys(shipped));
+}
+
+TEST_F(Run, EffectiveConfigurationReadsBack) {
+  write_config(
+      "input:\n  files: [data/localisations.csv]\n  columns: {x: {name: \"x [nm]\", unit: px, kind: std}}\n"
+      "  pixel_size_nm: 130\nregistration: {seed: 9, starts: [random]}\noutput: {voxel_nm: 1.5}\n");
+  const std::string once = run_config_text(config());
+  write_config(once);
+  EXPECT_EQ(run_config_text(config()), once);
+  EXPECT_THAT(once, HasSubstr("seed: 9"));
+}
+
+}  // namespace
+}  // namespace polar
