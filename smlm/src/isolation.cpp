@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -38,7 +39,29 @@ std::uint64_t limit_memory(std::uint64_t bytes) {
   return now > 0 && ::setrlimit(RLIMIT_AS, &space) == 0 ? now + bytes : 0;
 }
 
-[[noreturn]] void run_child(const std::function<void()>& attempt, const ReadingLimits& limits) {
+// A message is the fault's number in one byte, then the text.
+void send(int pipe, const Error& error) {
+  std::string message(1, static_cast<char>(error.exit_code()));
+  message += error.what();
+  for (std::size_t sent = 0; sent < message.size();) {
+    const ssize_t written = ::write(pipe, message.data() + sent, message.size() - sent);
+    if (written < 0 && errno != EINTR) return;
+    sent += written < 0 ? 0 : static_cast<std::size_t>(written);
+  }
+}
+
+std::string receive(int pipe) {
+  std::string message;
+  std::array<char, 4096> buffer{};
+  while (true) {
+    const ssize_t read = ::read(pipe, buffer.data(), buffer.size());
+    if (read < 0 && errno == EINTR) continue;
+    if (read <= 0) return message;
+    message.append(buffer.data(), static_cast<std::size_t>(read));
+  }
+}
+
+[[noreturn]] void run_child(const std::function<void()>& attempt, const ReadingLimits& limits, int pipe) {
   for (const int deadly : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGALRM, SIGTERM, SIGINT})
     std::signal(deadly, SIG_DFL);
   const int silence = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -54,7 +77,9 @@ std::uint64_t limit_memory(std::uint64_t bytes) {
     attempt();
   } catch (const std::bad_alloc&) {
     ::_exit(out_of_memory);
-  } catch (...) {  // NOLINT: an exception is a survival; the parent will meet it again
+  } catch (const Error& error) {
+    send(pipe, error);
+  } catch (...) {  // NOLINT: any other exception is a survival; the parent will meet it again
   }
   // C libraries turn a failed allocation into an error of their own, so the peak has the last word.
   constexpr std::uint64_t margin_bytes = 64 << 20;
@@ -65,16 +90,25 @@ std::uint64_t limit_memory(std::uint64_t bytes) {
 
 void require_survival(const std::string& path, const std::function<void()>& attempt,
                       const ReadingLimits& limits) {
-  const pid_t child = ::fork();
-  if (child < 0)
+  std::array<int, 2> ends{};
+  const bool piped = ::pipe2(ends.data(), O_CLOEXEC) == 0;
+  const pid_t child = piped ? ::fork() : -1;
+  if (child < 0) {
     throw Error(Fault::resource, path,
                 std::string("no process could be made to read it (") + std::strerror(errno) + ")");
-  if (child == 0) run_child(attempt, limits);
+  }
+  if (child == 0) run_child(attempt, limits, ends[1]);
+  ::close(ends[1]);
+  const std::string message = receive(ends[0]);
+  ::close(ends[0]);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) throw Error(Fault::resource, path, "the process that reads it was lost");
   }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+    if (!message.empty()) throw Error(static_cast<Fault>(message.front()), "", message.substr(1));
+    return;
+  }
   const bool late = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM;
   const bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
   if (WIFEXITED(status) && WEXITSTATUS(status) == out_of_memory) {

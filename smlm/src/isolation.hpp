@@ -16,10 +16,11 @@ struct ReadingLimits {
 /// Generous for any sound file of this size, on a slow disk and whatever its compression usually is.
 ReadingLimits reading_limits(const std::string& path);
 
-/// Runs `attempt` in a forked child whose output is discarded. Returns when the child ends by itself,
-/// whatever `attempt` threw. Throws, naming `path`, Error(input) when it died or took too long and
-/// Error(resource) when it took too much memory. Nothing that `attempt` changes is seen here, so the work is
-/// done again afterwards, by a process that now knows that it survives it.
+/// Runs `attempt` in a forked child whose output is discarded. Returns when the child ends by itself. Throws
+/// the smlm::Error that `attempt` threw, so that this process never meets what caused it; and, naming `path`,
+/// Error(input) when the child died or took too long, Error(resource) when it took too much memory. Nothing
+/// that `attempt` changes is seen here, so the work is done again afterwards, by a process that now knows
+/// that it survives it.
 void require_survival(const std::string& path, const std::function<void()>& attempt,
                       const ReadingLimits& limits);
 

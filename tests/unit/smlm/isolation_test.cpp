@@ -23,8 +23,17 @@ TEST(Isolation, WhatSurvivesChangesNothingHere) {
   EXPECT_NO_THROW(require_survival(
       "a", [&] { touched = 1; }, generous));
   EXPECT_NO_THROW(require_survival(
-      "a", [] { throw std::runtime_error("an error is no crash"); }, generous));
+      "a", [] { throw std::runtime_error("an exception is no crash"); }, generous));
   EXPECT_EQ(touched, 0);
+}
+
+TEST(Isolation, AnErrorArrivesAsItWasThrown) {
+  const Error error = test::error_of([] {
+    require_survival(
+        "a", [] { throw Error(Fault::numerical, "x.h5:/locs", "is odd", "mend it"); }, generous);
+  });
+  EXPECT_EQ(error.fault(), Fault::numerical);
+  EXPECT_STREQ(error.what(), "x.h5:/locs: is odd: mend it");
 }
 
 TEST(Isolation, ACrashIsAnInputErrorThatNamesTheFile) {

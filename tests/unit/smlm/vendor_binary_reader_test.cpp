@@ -315,6 +315,43 @@ TEST_F(SmlmArchive, OffsetsAndUnitsAreApplied) {
   EXPECT_NEAR(dstorm.position_nm[0][0], 1653.34, 1e-2);
 }
 
+// Flipped bits may leave a table, or give an error; they never end the process.
+TEST_F(VendorBinary, FlippedBitsNeverEndTheProcess) {
+  {
+    h5::File file = h5::File::create(path("h.hdf5"));
+    const std::vector<float> ones(5, 1.F);
+    const std::vector<float> x{1, 2, 3, 4, 5};
+    file.write_table("/locs",
+                     {h5::table_column("x", x), h5::table_column("y", x), h5::table_column("lpx", ones),
+                      h5::table_column("lpy", ones), h5::table_column("group", ones)});
+    file.close();
+  }
+  write_particles_v5(path("p.mat"), "particles", "points");
+  write("m.npy", minflux_npy(10));
+  ReadOptions options;
+  options.pixel_size_nm = 100;
+  std::uint64_t random = 1;
+  const auto next = [&random] {
+    return (random = random * 6364136223846793005ULL + 1442695040888963407ULL) >> 33;
+  };
+  for (const char* name : {"h.hdf5", "p.mat", "m.npy"}) {
+    std::ifstream source(path(name), std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(source), {}};
+    int refused = 0;
+    for (int trial = 0; trial < 100; ++trial) {
+      std::string bytes = whole;
+      for (int flip = 0; flip < 3; ++flip) bytes[next() % bytes.size()] ^= static_cast<char>(1 << next() % 8);
+      try {
+        EXPECT_LE(read_table(write("flipped", bytes), options).size(), 1000u);
+      } catch (const Error& error) {
+        ++refused;
+        EXPECT_TRUE(error.fault() == Fault::input || error.fault() == Fault::resource) << error.what();
+      }
+    }
+    EXPECT_GT(refused, 0) << name;
+  }
+}
+
 TEST_F(VendorBinary, PyminfluxProjectsAreNamed) {
   {
     h5::File file = h5::File::create(path("p.pmx"));
