@@ -43,6 +43,7 @@ void refuse_known(const FileHead& head) {
   }
   if (is_mat_v5(head.bytes))
     refuse("is a MATLAB file without a known table", "save a cell array 'particles', or export CSV");
+  if (starts("\xFF\xFE") || starts("\xFE\xFF")) refuse("is UTF-16 text", "save it as UTF-8");
   if (starts("#ASDF")) refuse("is an ASDF file", "export the table as CSV from Locan");
   if (starts("PK\x03\x04")) refuse("is a ZIP archive and not an .smlm file, or damaged", "unpack it first");
   if (head.bytes.find(": ") < head.bytes.find('\n')) {

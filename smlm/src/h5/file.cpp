@@ -31,6 +31,8 @@ Handle access_properties() {
   // Raw data caches per data set: enough for a row of chunks, and bounded however many are opened.
   H5Pset_cache(access.get(), 0, 521, 4 << 20, 0.75);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  // Network file systems without locks are read without; HDF5_USE_FILE_LOCKING=FALSE overrides any lock.
+  H5Pset_file_locking(access.get(), 1, 1);
   return access;
 }
 

@@ -59,6 +59,7 @@ std::size_t count_fields(std::string_view line, char delimiter) {
 std::string describe(std::string_view field) {
   const std::string shown = field.size() > 40 ? std::string(field.substr(0, 40)) + "..." : std::string(field);
   if (field.empty()) return "the field is empty";
+  if (field.find(',') != std::string_view::npos) return "'" + shown + "' has a decimal comma";
   if (field.front() == '+') return "'" + shown + "' has a leading +";
   return "'" + shown + "' is not a number";
 }

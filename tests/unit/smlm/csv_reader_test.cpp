@@ -183,6 +183,7 @@ TEST_F(CsvReader, ErrorsNameLineAndField) {
     EXPECT_THAT(refused(head + "1," + bad + ",3,4\n").what(),
                 HasSubstr("t.csv:4:2: '" + std::string(bad) + "'"));
   }
+  EXPECT_THAT(refused("x_nm;y_nm\n1,5;2\n").what(), HasSubstr("t.csv:2:1: '1,5' has a decimal comma"));
   EXPECT_THAT(refused(head + "1,,3,4\n").what(), HasSubstr("t.csv:4:2: the field is empty"));
   EXPECT_THAT(refused(head + "nan,2,3,4\n").what(), HasSubstr("t.csv:4:1: position is not finite"));
   EXPECT_THAT(refused(head + "nan(0x1),2,3,4\n").what(), HasSubstr("t.csv:4:1: position is not finite"));
@@ -256,6 +257,7 @@ TEST_F(CsvReader, HopelessFilesFailFast) {
   csv.format = "csv";
   EXPECT_THAT(refused(wide + "x\n", csv).what(), HasSubstr("columns"));
   EXPECT_THAT(refused("\xFF\xFEx,y\n", csv).what(), HasSubstr("UTF-16"));
+  EXPECT_THAT(refused(std::string("\xFF\xFEx\0,\0y\0\n\0", 10)).what(), HasSubstr("UTF-16"));
   EXPECT_EQ(test::error_of([&] { read_table("/dev/zero", {}); }).fault(), Fault::input);
   EXPECT_EQ(test::error_of([&] { read_table(folder_.string(), {}); }).fault(), Fault::input);
   EXPECT_EQ(test::error_of([&] { read_table(path("none.csv"), {}); }).fault(), Fault::io);
