@@ -37,8 +37,17 @@ class Stopwatch {
 // The configuration without where its files lie: the same computation in another place is the same.
 std::string computation_text(RunConfig config) {
   config.output = {};
-  for (std::string& file : config.files) file = std::filesystem::path(file).filename().string();
+  const auto name_only = [](std::string& file) { file = std::filesystem::path(file).filename().string(); };
+  std::for_each(config.files.begin(), config.files.end(), name_only);
+  name_only(config.read.pick.centres);
   return run_config_text(config);
+}
+
+// Everything that is read.
+std::vector<std::string> input_files(const RunConfig& config) {
+  std::vector<std::string> files = config.files;
+  if (!config.read.pick.centres.empty()) files.push_back(config.read.pick.centres);
+  return files;
 }
 
 // Whether the directory holds a complete result of this very computation. One of another computation is
@@ -187,7 +196,7 @@ std::vector<std::string> write(const Results& r, const RunConfig& config,
 RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress, const Engine& engine) {
   const Stopwatch watch;
   const pipeline::OutputDirectory directory(config.output.directory, flags);
-  const std::string hash = pipeline::input_hash(config.files, computation_text(config));
+  const std::string hash = pipeline::input_hash(input_files(config), computation_text(config));
   if (flags.resume && is_complete(directory, hash))
     return {false, {"results      " + config.output.directory + " (complete already)"}};
   const Results r = compute(config, hash, progress, engine);

@@ -24,6 +24,11 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("sigma_kind", o.sigma_kind);
     s.field("lpz_unit", o.lpz_unit);
     s.field("particles", o.particles);
+    s.section("pick", [&](auto& pick) {
+      pick.field("radius_nm", o.pick.radius_nm);
+      pick.field("centres", o.pick.centres);
+      pick.field("min_localisations", o.pick.min_localisations);
+    });
     s.field("unassigned_particle", o.unassigned_particle);
     s.field("drop_nonfinite", o.drop_nonfinite);
     s.field("assumed_sigma_nm", o.assumed_sigma_nm);
@@ -33,7 +38,9 @@ void fields(Visitor& v, RunConfig& c) {
     RegistrationOptions& o = c.registration;
     s.field("seed", o.seed);
     s.field("starts", o.starts);
+    s.field("method", c.method);
     s.field("search", o.search);
+    s.field("optimizer", c.optimizer);
     s.field("symmetry", o.symmetry);
   });
   v.section("output", [&](auto& s) {
@@ -55,11 +62,19 @@ std::string symmetry_fault(const std::string& symmetry) {
   }
 }
 
+void require_word(std::vector<std::string>& faults, const char* key, const std::string& value,
+                  const char* only) {
+  if (value != only)
+    faults.push_back(std::string(key) + " is '" + value + "', this version knows " + only + " only");
+}
+
 void check(const RunConfig& c, const std::string& path) {
   std::vector<std::string> faults;
   if (c.files.empty()) faults.emplace_back("input.files is missing: list the localisation tables");
   for (const std::string& v : violations(c.read)) faults.push_back("input." + v);
-  for (const std::string& v : violations(c.registration)) faults.push_back("registration: " + v);
+  for (const std::string& v : violations(c.registration)) faults.push_back(v);
+  require_word(faults, "registration.method", c.method, "likelihood");
+  require_word(faults, "registration.optimizer", c.optimizer, "levenberg_marquardt");
   const std::string fault = symmetry_fault(c.registration.symmetry);
   if (!fault.empty()) faults.push_back("registration." + fault);
   for (const std::string& format : c.output.formats)
@@ -82,6 +97,8 @@ RunConfig load_run_config(const std::string& path, const std::vector<std::string
   reader.finish();
   check(config, path);
   const std::string folder = pipeline::folder_of(path);
+  if (!config.read.pick.centres.empty())
+    config.read.pick.centres = pipeline::resolve_path(config.read.pick.centres, folder);
   config.files = pipeline::expand_files(config.files, folder);
   config.output.directory = pipeline::resolve_path(config.output.directory, folder);
   return config;

@@ -191,6 +191,10 @@ TEST_F(Run, ConfigurationFaults) {
   EXPECT_THAT(message_, HasSubstr("did you mean 'registration.symmetry'?"));
   EXPECT_EQ(code("input: {files: data/*.csv}\nregistration: {symmetry: C8x}\n"), 2);
   EXPECT_EQ(code("input: {files: data/*.csv}\nregistration: {search: slow}\n"), 2);
+  EXPECT_EQ(code("input: {files: data/*.csv}\nregistration: {method: guess}\n"), 2);
+  EXPECT_THAT(message_, HasSubstr("registration.method is 'guess'"));
+  EXPECT_EQ(code("input: {files: data/*.csv, particles: picked}\n"), 2);
+  EXPECT_THAT(message_, HasSubstr("input.pick.radius_nm"));
   EXPECT_EQ(code("input: {files: data/*.csv}\noutput: {formats: [hdf6]}\n"), 2);
   EXPECT_EQ(code("input: {files: data/*.csv, columns: {x: {name: a, unit: px, knd: std}}}\n"), 2);
   EXPECT_THAT(message_, HasSubstr("did you mean 'input.columns.x.kind'?"));
