@@ -107,7 +107,7 @@ bool has_axis(const Views& views, const std::vector<Eigen::Vector3f>& axes) {
 
 CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3f>& axes,
                             const Subsets& held_out, const Mixture& mixture, const std::vector<Pose>& poses,
-                            const NoiseModel& start) {
+                            const NoiseModel& start, const std::vector<std::vector<float>>& visibility) {
   const Subsets few = at_most(held_out, kMostLocalisations);
   double localisations = 0;
   std::vector<int> which;
@@ -121,7 +121,9 @@ CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3
   CalibrationReport report{start, 0};
   if (which.empty()) return report;
   const auto mean = [&](const NoiseModel& noise) {
-    const FusionData data(views, axes, noise, few, which);
+    FusionData data(views, axes, noise, few, which);
+    for (std::size_t k = 0; k < which.size() && !visibility.empty(); ++k)
+      data.set_visibility(k, visibility[static_cast<std::size_t>(which[k])]);
     const std::vector<double> per_view = mean_log_likelihood(mixture, data, pose);
     double total = 0;
     for (std::size_t k = 0; k < which.size(); ++k)

@@ -36,6 +36,10 @@ void FusionData::set_visibility(std::size_t view, std::vector<float> factor) {
   impl_->visibility[view] = std::move(factor);
 }
 
+void FusionData::set_visibility(std::vector<std::vector<float>> factor) {
+  impl_->visibility = std::move(factor);
+}
+
 const std::vector<float>& FusionData::visibility(std::size_t view) const { return impl_->visibility[view]; }
 
 const float* view_weight(const FusionData& data, std::size_t view, const float* weight,

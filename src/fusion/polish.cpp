@@ -16,7 +16,7 @@ namespace polar {
 
 namespace {
 
-constexpr int kResponsibilityRounds = 3;
+constexpr int kResponsibilityRounds = 2;
 constexpr int kIterations = 8;
 constexpr float kLeastResponsibility = 1e-3f;  // of a centre for a localisation to keep the pair
 constexpr double kDifference = 1e-4;           // step of the second derivative, rad and particle radii
@@ -28,12 +28,13 @@ struct Pair {
 };
 
 // Pairs of localisation and centre with their responsibility at a pose.
-std::vector<Pair> pairs_at(const Mixture& m, const KernelLocalisations& view,
-                           const Pose& view_from_template) {
+std::vector<Pair> pairs_at(const Mixture& m, const std::vector<float>& visibility,
+                           const KernelLocalisations& view, const Pose& view_from_template) {
   std::vector<Pair> pairs;
   Eigen::ArrayXf weight(m.size());
   Eigen::Matrix3Xf moved(3, m.size()), difference(3, m.size());
-  const auto inlier = static_cast<float>(1 - m.outlier_fraction);
+  Eigen::ArrayXf prior = m.weight.array() * static_cast<float>(1 - m.outlier_fraction);
+  if (!visibility.empty()) prior *= Eigen::Map<const Eigen::ArrayXf>(visibility.data(), m.size());
   const Eigen::Matrix3f r = view_from_template.rotation.cast<float>();
   moved = (r * m.centre).colwise() + view_from_template.translation.cast<float>().eval();
   const auto background = static_cast<float>(m.outlier_fraction * m.outlier_density);
@@ -43,7 +44,7 @@ std::vector<Pair> pairs_at(const Mixture& m, const KernelLocalisations& view,
     const Eigen::Vector3f x(l.x, l.y, l.z);
     difference = moved.colwise() - x;
     weight = (-0.5f * (difference.array() * (p * difference).array()).colwise().sum().transpose()).exp() *
-             m.weight.array() * (inlier * l.norm);
+             prior * l.norm;
     const float total = background + weight.sum();
     // P may be singular (planar): its root by eigenvalues.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(p.cast<double>());
@@ -176,7 +177,7 @@ std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
     Pose pose = poses[i].inverse();
     double best = log_likelihood(frame, view, pose, background, weight);
     for (int round = 0; round < kResponsibilityRounds; ++round) {
-      const std::vector<Pair> pairs = pairs_at(mixture, view, pose);
+      const std::vector<Pair> pairs = pairs_at(mixture, data.visibility(i), view, pose);
       if (pairs.size() < 3) break;
       const Pose next = least_squares(pairs, pose, data.planar());
       const double there = log_likelihood(frame, view, next, background, weight);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "polar/fusion/calibration.hpp"
 #include "polar/fusion/discretise.hpp"
 #include "polar/fusion/maximisation.hpp"
+#include "polar/fusion/occupancy.hpp"
 #include "polar/fusion/polish.hpp"
 #include "template_tools.hpp"
 
@@ -17,22 +19,37 @@ namespace {
 constexpr std::size_t kDecisionLocalisations = 60000;  // over all views: enough to choose by, cheap to fit
 constexpr int kFuseSweeps = 3;
 constexpr int kMergedSweeps = 8;
+constexpr double kMergeFactors[] = {1, 2, 4, 8};  // times the width of a centre
+constexpr double kSmallestMerge = 0.02;           // particle radii
 constexpr double kMergeTolerance =
-    0.002;  // held-out log density per localisation that fewer centres may cost
+    0.002;                          // held-out log density per localisation that fewer centres may cost
+constexpr double kHopeless = 0.02;  // merging farther will not come back from this loss
 constexpr int kPolishRounds = 2;
 constexpr int kFewestLocalisations = 4;
 constexpr double kMostOutliers = 0.8;
 constexpr double kMostRotationStd = 0.5236;  // 30 degrees: such a pose says nothing
 
-void fuse(const Problem& problem, const NoiseModel& noise, const Subsets& subsets, int sweeps, bool move,
+double typical_spread(const NoiseModel& n) { return std::max(n.lateral_extra, n.width); }
+
+// Sites nearer than this are not told apart within one view.
+double reach_of(const NoiseModel& n) { return 2 * typical_spread(n); }
+
+std::vector<std::vector<float>> occupancy_of(const RoundState& state, const FusionData& evidence,
+                                             const NoiseModel& noise) {
+  return occupancy(state.mixture, evidence, state.pose, state.occupancy, reach_of(noise));
+}
+
+void fuse(const Problem& problem, const NoiseModel& noise, const Subsets& subsets, int sweeps,
           RoundState& state) {
-  const FusionData data(problem.views, problem.axes, noise, subsets);
+  FusionData data(problem.views, problem.axes, noise, subsets);
   MaximisationOptions em;
   em.free_weights = true;
   em.weakest_share = 0;  // a centre that dies stays dead: the number of sites is being found
   for (int sweep = 0; sweep < sweeps; ++sweep) {
+    data.set_visibility(occupancy_of(state, data, noise));
     maximise(state.mixture, data, state.pose, em);
-    if (move) refine_poses(state.mixture, data, state.pose, 2);
+    data.set_visibility(occupancy_of(state, data, noise));
+    refine_poses(state.mixture, data, state.pose, 2);
   }
 }
 
@@ -41,36 +58,59 @@ Subsets decision_subset(const Problem& problem) {
                                       20, kDecisionLocalisations / std::max<std::size_t>(1, problem.size())));
 }
 
-double typical_spread(const NoiseModel& n) { return std::max(n.lateral_extra, n.width); }
+// How much a view's own occupancy is believed: judged by localisations that did not estimate it. Infinite
+// where views show the whole template. Returns the mean log density of the held-out localisations.
+double choose_occupancy(const Problem& problem, const NoiseModel& noise, RoundState& state) {
+  const FusionData fitted(problem.views, problem.axes, noise, decision_subset(problem));
+  FusionData judged(problem.views, problem.axes, noise, problem.held_out);
+  double count = 0, best = -std::numeric_limits<double>::infinity();
+  for (const auto& s : problem.held_out) count += static_cast<double>(s.size());
+  for (const double strength : {std::numeric_limits<double>::infinity(), 1.0, 0.3, 0.1, 0.03}) {
+    judged.set_visibility(occupancy(state.mixture, fitted, state.pose, strength, reach_of(noise)));
+    const std::vector<double> mean = mean_log_likelihood(state.mixture, judged, state.pose);
+    double score = 0;
+    for (std::size_t i = 0; i < mean.size(); ++i)
+      score += mean[i] * static_cast<double>(problem.held_out[i].size()) / count;
+    if (score > best) best = score, state.occupancy = strength;
+  }
+  return best;
+}
+
+NoiseModel calibrated(const Problem& problem, const NoiseModel& noise, const RoundState& state) {
+  const FusionData fitted(problem.views, problem.axes, noise, decision_subset(problem));
+  return calibrate(problem.views, problem.axes, problem.held_out, state.mixture, state.pose, noise,
+                   occupancy_of(state, fitted, noise))
+      .noise;
+}
 
 }  // namespace
 
 NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noise, RoundState& state) {
   const Subsets few = decision_subset(problem);
   for (int cycle = 0; cycle < cycles; ++cycle) {
-    noise = calibrate(problem.views, problem.axes, problem.held_out, state.mixture, state.pose, noise).noise;
-    fuse(problem, noise, few, kFuseSweeps, true, state);
+    noise = calibrated(problem, noise, state);
+    fuse(problem, noise, few, kFuseSweeps, state);
   }
   return noise;
 }
 
 NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state) {
-  double best_score = held_out_score(problem, state.mixture, state.pose, noise);
+  const Subsets few = decision_subset(problem);
+  double best_score = choose_occupancy(problem, noise, state);
   RoundState best = state;
   NoiseModel best_noise = noise;
-  const Subsets few = decision_subset(problem);
-  for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
+  for (const double factor : kMergeFactors) {
     RoundState trial = state;
-    trial.mixture = merged(state.mixture, factor * std::max(typical_spread(noise), 0.02));
+    trial.mixture = merged(state.mixture, factor * std::max(typical_spread(noise), kSmallestMerge));
     if (trial.mixture.size() == best.mixture.size()) continue;
     NoiseModel trial_noise = noise;
+    double score = 0;
     for (int cycle = 0; cycle < 2; ++cycle) {
-      fuse(problem, trial_noise, few, kMergedSweeps / 2, true, trial);
-      trial_noise =
-          calibrate(problem.views, problem.axes, problem.held_out, trial.mixture, trial.pose, trial_noise)
-              .noise;
+      fuse(problem, trial_noise, few, kMergedSweeps / 2, trial);
+      trial_noise = calibrated(problem, trial_noise, trial);
+      score = choose_occupancy(problem, trial_noise, trial);
     }
-    const double score = held_out_score(problem, trial.mixture, trial.pose, trial_noise);
+    if (score < best_score - kHopeless) break;
     if (score < best_score - kMergeTolerance) continue;
     best_score = std::max(best_score, score);
     best = trial;
@@ -81,12 +121,16 @@ NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, Round
 }
 
 void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& state, Registration& out) {
-  const FusionData data(problem.views, problem.axes, noise, problem.shuffled);
+  FusionData data(problem.views, problem.axes, noise, problem.shuffled);
   std::vector<PolishedPose> polished;
+  MaximisationOptions em;
+  em.free_weights = true;
+  em.weakest_share = 0;
   for (int round = 0; round < kPolishRounds; ++round) {
-    fuse(problem, noise, problem.shuffled, 1, false, state);
+    data.set_visibility(occupancy_of(state, data, noise));
     polished = polish(state.mixture, data, state.pose);
     for (std::size_t i = 0; i < polished.size(); ++i) state.pose[i] = polished[i].template_from_view;
+    if (round + 1 < kPolishRounds) maximise(state.mixture, data, state.pose, em);
   }
   out.view.resize(problem.size());
   for (std::size_t i = 0; i < problem.size(); ++i) {
@@ -97,6 +141,7 @@ void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& sta
     v.log_likelihood = p.log_likelihood;
     v.outlier_fraction = p.outlier_fraction;
     v.margin = i < state.margin.size() && std::isfinite(state.margin[i]) ? state.margin[i] : 0;
+    v.visibility = shown_share(state.mixture, data.visibility(i));
     v.n_used = static_cast<int>(problem.shuffled[i].size());
     const double rotation_std = std::sqrt(std::max(0.0, v.covariance.topLeftCorner<3, 3>().trace()));
     v.reason.clear();

@@ -2,6 +2,7 @@
 // place of the latent loss).
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "polar/core/progress.hpp"
@@ -29,8 +30,10 @@ struct RoundState {
   std::vector<Pose> pose;      // template_from_view, all views
   std::vector<double> margin;  // of the last search
   bool crowded = true;         // template_tools.hpp
-  double width = 0;            // of the template after the last round kept
-  double held_out = -1e300;    // mean log density of the held-out localisations at that width
+  double occupancy =
+      std::numeric_limits<double>::infinity();  // polar/fusion/occupancy.hpp: strength of its prior
+  double width = 0;                             // of the template after the last round kept
+  double held_out = -1e300;  // mean log density of the held-out localisations at that width
   int rounds = 0;
   int escaped = 0;  // in the last search
 };

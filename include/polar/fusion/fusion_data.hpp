@@ -32,6 +32,7 @@ class FusionData {
   /// Visibility: factors on the weights of the mixture's centres for one view, or none. Normalisation is the
   /// caller's.
   void set_visibility(std::size_t view, std::vector<float> factor);
+  void set_visibility(std::vector<std::vector<float>> factor_of_view);
   const std::vector<float>& visibility(std::size_t view) const;
 
   struct Impl;

@@ -24,7 +24,7 @@ struct PolishedPose {
 };
 
 /// Poses template_from_view, one a view of `data`, template fixed. Minimises with Ceres, for responsibilities
-/// r_jk renewed three times, 1/2 sum_jk r_jk |C_j^(-1/2) (x_j - R^T (mu_k - t))|^2; the outlier class makes
+/// r_jk renewed twice, 1/2 sum_jk r_jk |C_j^(-1/2) (x_j - R^T (mu_k - t))|^2; the outlier class makes
 /// it robust.
 std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
                                  const std::vector<Pose>& template_from_view);

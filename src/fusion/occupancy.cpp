@@ -1,0 +1,78 @@
+#include "polar/fusion/occupancy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "blocked_mixture.hpp"
+#include "fusion_data_impl.hpp"
+#include "mixture_kernel_choice.hpp"
+#include "polar/core/parallel.hpp"
+
+namespace polar {
+
+namespace {
+// For every centre those within `reach`, itself among them.
+std::vector<std::vector<std::size_t>> neighbours_within(const Mixture& m, double reach) {
+  std::vector<std::vector<std::size_t>> out(static_cast<std::size_t>(m.size()));
+  const auto r2 = static_cast<float>(reach * reach);
+  for (Eigen::Index k = 0; k < m.size(); ++k)
+    for (Eigen::Index l = 0; l < m.size(); ++l)
+      if (l == k || (m.centre.col(k) - m.centre.col(l)).squaredNorm() < r2)
+        out[static_cast<std::size_t>(k)].push_back(static_cast<std::size_t>(l));
+  return out;
+}
+
+constexpr int kIterations = 6;
+constexpr float kLeastWeight = 1e-12f;  // of a centre before a factor on it means anything
+}  // namespace
+
+std::vector<std::vector<float>> occupancy(const Mixture& mixture, const FusionData& evidence,
+                                          const std::vector<Pose>& poses, double strength, double reach) {
+  std::vector<std::vector<float>> factors(evidence.size());
+  if (!std::isfinite(strength)) return factors;
+  const BlockedMixture blocked(mixture);
+  const auto centres = static_cast<std::size_t>(mixture.size());
+  const auto padded = static_cast<std::size_t>(blocked.padded_size());
+  const auto near = neighbours_within(mixture, reach);
+  parallel_for(evidence.size(), [&](std::size_t i) {
+    const KernelLocalisations& view = evidence.impl().view[i];
+    if (view.empty()) return;
+    ViewFrame frame(blocked);
+    const Pose pose = poses[i].inverse();
+    std::vector<float> factor(centres, 1.0f), weight(padded, 0.0f), sums(kernel::kSums * padded),
+        scratch(padded);
+    std::vector<float> inlier(view.size()), density(view.size());
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      for (std::size_t k = 0; k < centres; ++k) weight[k] = blocked.weight()[k] * factor[k];
+      std::fill(sums.begin(), sums.end(), 0.0f);
+      mixture_kernel().accumulate(frame.at(pose, weight.data()), view.data(), static_cast<int>(view.size()),
+                                  blocked.background(), sums.data(), inlier.data(), density.data(),
+                                  scratch.data());
+      double total = 0;
+      for (std::size_t k = 0; k < centres; ++k) total += static_cast<double>(sums[k]);
+      const double prior = strength * static_cast<double>(centres);
+      for (std::size_t k = 0; k < centres; ++k) {
+        const float w = mixture.weight[static_cast<Eigen::Index>(k)];
+        if (w < kLeastWeight) continue;
+        double seen = 0, share = 0;
+        for (const std::size_t l : near[k]) {
+          seen += static_cast<double>(sums[l]);
+          share += static_cast<double>(mixture.weight[static_cast<Eigen::Index>(l)]);
+        }
+        factor[k] = static_cast<float>((seen / share + prior) / (total + prior));
+      }
+    }
+    factors[i] = std::move(factor);
+  });
+  return factors;
+}
+
+double shown_share(const Mixture& mixture, const std::vector<float>& factor) {
+  if (factor.empty()) return 1;
+  double share = 0;
+  for (std::size_t k = 0; k < factor.size(); ++k)
+    share += static_cast<double>(mixture.weight[static_cast<Eigen::Index>(k)] * std::min(1.0f, factor[k]));
+  return share;
+}
+
+}  // namespace polar
