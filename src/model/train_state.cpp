@@ -35,9 +35,9 @@ void write_checkpoint(const std::string& path, const TrainOptions& options, cons
   }
   h5.write("/curve/step", state.curve_step);
   h5.write("/curve/loss", state.curve_loss);
-  h5.write("/counters",
-           std::vector<std::int64_t>{kVersion, static_cast<std::int64_t>(options.seed),
-                                     options.clouds_per_step, state.step, state.reports_since_best});
+  h5.write("/counters", std::vector<std::int64_t>{kVersion, static_cast<std::int64_t>(options.seed),
+                                                  options.clouds_per_step, state.step,
+                                                  state.reports_since_best, state.loss_steps});
   h5.write("/schedule", std::vector<double>{state.rate_factor, state.best_loss, state.loss_sum});
   h5.close();
   file.commit();
@@ -60,7 +60,7 @@ TrainState read_checkpoint(const std::string& path, const TrainOptions& options)
                         "start anew with another `checkpoint`");
     into = std::move(values);
   };
-  if (counters.size() != 5 || counters[0] != kVersion || schedule.size() != 3)
+  if (counters.size() != 6 || counters[0] != kVersion || schedule.size() != 3)
     throw smlm::Error(smlm::Fault::input, path, "is a checkpoint of another version of this program",
                       "start anew with another `checkpoint`");
   if (counters[1] != static_cast<std::int64_t>(options.seed) || counters[2] != options.clouds_per_step)
@@ -81,6 +81,7 @@ TrainState read_checkpoint(const std::string& path, const TrainOptions& options)
   state.curve_loss = h5.read<double>("/curve/loss");
   state.step = counters[3];
   state.reports_since_best = counters[4];
+  state.loss_steps = counters[5];
   state.rate_factor = schedule[0];
   state.best_loss = schedule[1];
   state.loss_sum = schedule[2];

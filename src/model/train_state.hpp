@@ -17,7 +17,8 @@ struct TrainState {
   double rate_factor = 1;   // of the plateau schedule
   double best_loss = 1e30;  // of the reports
   std::int64_t reports_since_best = 0;
-  double loss_sum = 0;  // since the last report
+  double loss_sum = 0;          // since the last report
+  std::int64_t loss_steps = 0;  // how many steps that is
   std::vector<std::int64_t> curve_step;
   std::vector<double> curve_loss;
 };

@@ -83,11 +83,13 @@ TrainReport train(const TrainOptions& options, Progress& progress) {
     adamw_step(options, gradient, state);
     network.update(state.moments, options.batch_norm_momentum);
     state.loss_sum += loss;
+    ++state.loss_steps;
     ++state.step;
     if (state.step % options.report_every_steps == 0) {
       state.curve_step.push_back(state.step);
-      state.curve_loss.push_back(state.loss_sum / options.report_every_steps);
+      state.curve_loss.push_back(state.loss_sum / static_cast<double>(state.loss_steps));
       state.loss_sum = 0;
+      state.loss_steps = 0;
       update_plateau(options, state.curve_loss.back(), state);
       progress.note(report_line(state, options, rate(reported, report_time)));
       reported = state.step;

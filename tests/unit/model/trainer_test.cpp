@@ -97,6 +97,21 @@ TEST_F(TrainerTest, goesOnFromItsCheckpointWithTheSameBits) {
   EXPECT_THROW(train(options_, quiet_), smlm::Error);
 }
 
+TEST_F(TrainerTest, reportsTheMeanLossWhenTheIntervalChangesOnTheWay) {
+  options_.report_every_steps = 1;
+  const TrainReport each = train(options_, quiet_);
+  ASSERT_EQ(each.loss.size(), 4u);
+  options_.checkpoint = (folder_ / "checkpoint.h5").string();
+  options_.report_every_steps = 4;
+  StopAfter stop(1);
+  train(options_, stop);
+  options_.report_every_steps = 2;
+  const TrainReport report = train(options_, quiet_);
+  ASSERT_EQ(report.step, (std::vector<std::int64_t>{2, 4}));
+  EXPECT_NEAR(report.loss[0], (each.loss[0] + each.loss[1]) / 2, 1e-12);
+  EXPECT_NEAR(report.loss[1], (each.loss[2] + each.loss[3]) / 2, 1e-12);
+}
+
 TEST_F(TrainerTest, learnsToRestoreCloudsItNeverSaw) {
   options_.steps = 200;
   options_.clouds_per_step = 16;
