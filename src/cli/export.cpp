@@ -23,9 +23,10 @@ int run(const Arguments& a) {
   const std::string output = !a.output.empty() ? a.output : beside.empty() ? "." : beside.string();
   if (!std::filesystem::is_directory(output))
     throw smlm::Error(smlm::Fault::io, output, "no such directory", "create it first");
-  const ResultRecord result = read_result_file(record);
+  ResultRecord result = read_result_file(record);
+  result.render.voxel_nm = a.voxel_nm;
   for (const std::string& format : a.formats)
-    for (const std::string& name : write_format(format, output, result.superparticle, {a.voxel_nm}))
+    for (const std::string& name : write_format(format, output, result.superparticle, result.render))
       std::printf("%s/%s\n", output.c_str(), name.c_str());
   return 0;
 }

@@ -175,7 +175,8 @@ std::vector<std::string> write(const Results& r, const RunConfig& config,
   // Without its summary the directory is not complete: it goes first and comes back last.
   std::filesystem::remove(directory.file(kSummary));
   const smlm::LocalisationTable aligned = superparticle(r);
-  const RenderOptions render{config.output.voxel_nm};
+  RenderOptions render = calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm);
+  render.voxel_nm = config.output.voxel_nm;
   std::vector<std::string> written = {"poses.csv"};
   smlm::write_file_atomically(directory.file("poses.csv"), format_pose_table(pose_rows(r)));
   std::vector<std::string> formats = config.output.formats;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "polar/core/parallel.hpp"
+#include "polar/fusion/effective.hpp"
 
 namespace polar {
 
@@ -56,6 +57,22 @@ Gaussian gaussian(const smlm::LocalisationTable& table, std::size_t row) {
   g.precision = m.inverse();
   g.peak = std::pow(kTwoPi, -dimensions / 2) / std::sqrt(m.determinant());
   return g;
+}
+
+// Covariances as calibrated; the axis of a particle's uncertainties turns with it, so each has its own.
+void calibrate(smlm::LocalisationTable& table, const RenderOptions& o) {
+  NoiseModel noise{o.lateral_factor, o.axial_factor, o.lateral_extra_nm, o.axial_extra_nm, 0, table.planar};
+  std::vector<std::vector<std::size_t>> rows(table.particle_names.size() + 1);
+  for (std::size_t i = 0; i < table.size(); ++i)
+    rows[std::min(rows.size() - 1, static_cast<std::size_t>(table.particle.empty() ? 0 : table.particle[i]))]
+        .push_back(i);
+  for (const auto& own : rows) {
+    View view;
+    for (const std::size_t i : own) view.covariance.push_back(table.covariance_nm2[i]);
+    const Eigen::Vector3f axis = uncertainty_axis(view, table.planar);
+    for (const std::size_t i : own)
+      table.covariance_nm2[i] = effective_covariance(table.covariance_nm2[i], axis, noise);
+  }
 }
 
 // Chooses box and voxel.
@@ -131,7 +148,21 @@ void add(Volume& v, const Gaussian& g, std::size_t z_begin, std::size_t z_end) {
 }
 }  // namespace
 
-Volume render(const smlm::LocalisationTable& table, const RenderOptions& options) {
+RenderOptions calibrated_rendering(const Calibration& c, double scale_nm) {
+  RenderOptions o;
+  o.lateral_factor = c.lateral_factor, o.axial_factor = c.axial_factor;
+  o.lateral_extra_nm = scale_nm * c.lateral_extra, o.axial_extra_nm = scale_nm * c.axial_extra;
+  return o;
+}
+
+Volume render(const smlm::LocalisationTable& stated, const RenderOptions& options) {
+  smlm::LocalisationTable table;  // what drawing needs, calibrated
+  table.position_nm = stated.position_nm;
+  table.covariance_nm2 = stated.covariance_nm2;
+  table.particle = stated.particle;
+  table.particle_names = stated.particle_names;
+  table.planar = stated.planar;
+  calibrate(table, options);
   if (table.size() == 0) return {{1, 1, 1}, {0, 0, 0}, 1, table.planar, {0.0f}};
   Volume v = frame(table, options);
   std::vector<Gaussian> gaussians(table.size());

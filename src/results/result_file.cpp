@@ -233,6 +233,11 @@ ResultRecord read_result_file(const std::string& path) {
       throw smlm::Error(smlm::Fault::input, path + ":/superparticle", "columns of different lengths",
                         "run again");
   }
+  const auto calibration = [&](const char* name) { return file.read_attribute<double>("/run/calibration", name).at(0); };
+  record.render.lateral_factor = calibration("lateral_factor");
+  record.render.axial_factor = calibration("axial_factor");
+  record.render.lateral_extra_nm = calibration("lateral_extra_nm");
+  record.render.axial_extra_nm = calibration("axial_extra_nm");
   const auto centre = file.read<double>("/template/centre"), weight = file.read<double>("/template/weight");
   if (centre.size() != 3 * weight.size())
     throw smlm::Error(smlm::Fault::input, path + ":/template", "centres and weights differ in number",

@@ -1,4 +1,5 @@
-// The superparticle as a density: every localisation is a Gaussian of its own rotated covariance. The only
+// The superparticle as a density: every localisation is a Gaussian of its own rotated and
+// calibrated covariance. The only
 // renderer: the volume file and the preview are both made from its volume.
 #pragma once
 
@@ -6,12 +7,16 @@
 #include <cstddef>
 #include <vector>
 
+#include "polar/registration/registration.hpp"
 #include "smlm/localisation_table.hpp"
 
 namespace polar {
 
 struct RenderOptions {
   double voxel_nm = 0;  // edge of a voxel; 0: half the median of the smallest standard deviations
+  /// sigma_eff^2 = factor^2 sigma^2 + extra^2 across and along the axis of a particle's uncertainties: draws the
+  /// precision that the data showed (Registration::calibration), not the one that the table states.
+  double lateral_factor = 1, axial_factor = 1, lateral_extra_nm = 0, axial_extra_nm = 0;
   /// No axis gets more voxels than this: the voxel grows instead.
   std::size_t most_voxels_per_axis = 256;
 };
@@ -28,6 +33,9 @@ struct Volume {
     return density[(z * size[1] + y) * size[0] + x];
   }
 };
+
+/// Options that draw a result with its own calibration.
+RenderOptions calibrated_rendering(const Calibration& calibration, double scale_nm);
 
 /// Renders into a box that holds all but the farthest 0.1 % of the localisations on every side, and their
 /// spread. The same bits for any number of threads. An empty table gives one empty voxel.

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "polar/results/render.hpp"
 #include "polar/results/results.hpp"
 
 namespace polar {
@@ -11,6 +12,7 @@ namespace polar {
 struct ResultRecord {
   smlm::LocalisationTable superparticle;
   TemplateSites sites;
+  RenderOptions render;  // its calibration
   std::string program, configuration, input_hash;
 };
 

@@ -1,0 +1,70 @@
+#include "polar/core/rng.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace polar {
+namespace {
+
+// Known answers of Philox4x32-10 from the test vectors of its authors' library, Random123.
+TEST(Philox, knownAnswers) {
+  const auto zero = philox4x32({0, 0, 0, 0}, {0, 0});
+  EXPECT_EQ(zero, (std::array<std::uint32_t, 4>{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  const auto ones = philox4x32({~0u, ~0u, ~0u, ~0u}, {~0u, ~0u});
+  EXPECT_EQ(ones, (std::array<std::uint32_t, 4>{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+}
+
+TEST(KeyedRandom, theSameKeyGivesTheSameStreamAndAnotherKeyAnother) {
+  KeyedRandom a(7, 3, 1), b(7, 3, 1), c(7, 4, 1), d(7, 3, 2);
+  int equal_c = 0, equal_d = 0;
+  for (int i = 0; i < 100; ++i) {
+    const auto v = a.bits();
+    EXPECT_EQ(v, b.bits());
+    equal_c += v == c.bits();
+    equal_d += v == d.bits();
+  }
+  EXPECT_LE(equal_c, 1);
+  EXPECT_LE(equal_d, 1);
+}
+
+TEST(KeyedRandom, momentsOfNormalAndPoisson) {
+  constexpr int kDraws = 40000;
+  KeyedRandom random(1, 0, 0);
+  double sum = 0, square = 0, count = 0, count_square = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const double x = random.normal();
+    sum += x, square += x * x;
+    const auto n = static_cast<double>(random.poisson(45));
+    count += n, count_square += n * n;
+  }
+  // Five standard errors of each mean.
+  EXPECT_NEAR(sum / kDraws, 0, 5 / std::sqrt(kDraws));
+  EXPECT_NEAR(square / kDraws, 1, 5 * std::sqrt(2.0 / kDraws));
+  const double mean = count / kDraws;
+  EXPECT_NEAR(mean, 45, 5 * std::sqrt(45.0 / kDraws));
+  EXPECT_NEAR(count_square / kDraws - mean * mean, 45, 5 * 45 * std::sqrt(2.0 / kDraws));
+}
+
+TEST(KeyedRandom, rotationsAreHaarUniform) {
+  // Under the Haar measure the trace of a rotation has mean 0 and mean square 1.
+  constexpr int kDraws = 40000;
+  KeyedRandom random(2, 0, 0);
+  double trace = 0, square = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const double t = random.rotation().trace();
+    trace += t, square += t * t;
+  }
+  EXPECT_NEAR(trace / kDraws, 0, 5 / std::sqrt(kDraws));
+  EXPECT_NEAR(square / kDraws, 1, 5 * 1.5 / std::sqrt(kDraws));
+}
+
+TEST(KeyedRandom, belowCoversItsRangeEvenly) {
+  KeyedRandom random(3, 0, 0);
+  std::array<int, 7> seen{};
+  for (int i = 0; i < 7000; ++i) ++seen[random.below(7)];
+  for (const int n : seen) EXPECT_NEAR(n, 1000, 5 * std::sqrt(1000.0));
+}
+
+}  // namespace
+}  // namespace polar

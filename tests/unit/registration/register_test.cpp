@@ -1,0 +1,136 @@
+#include "polar/registration/register.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "polar/core/parallel.hpp"
+#include "polar/core/so3.hpp"
+#include "polar/registration/prepare.hpp"
+#include "polar/results/symmetry_group.hpp"
+#include "polar/simulation/simulate.hpp"
+
+namespace polar {
+namespace {
+
+struct Simulated {
+  Views views;
+  std::vector<Eigen::Matrix3d> structure_from_view;
+};
+
+Simulated simulated(const SimulationOptions& options) {
+  const Simulation s = simulate(make_structure({}), options);
+  Simulated out;
+  out.views = prepare_views(smlm::group_particles(s.table));
+  for (const auto& p : s.particle) out.structure_from_view.push_back(p.structure_from_view.rotation);
+  return out;
+}
+
+SimulationOptions small(std::uint64_t seed) {
+  SimulationOptions o;  // nuclear pores, symmetry D8
+  o.seed = seed;
+  o.particles = 40;
+  o.blinks_mean = 6;
+  o.cramer_rao = false;
+  return o;
+}
+
+// Share of pairs of views whose relative rotation is right within `deg`, modulo D8.
+double recall(const Registration& r, const std::vector<Eigen::Matrix3d>& truth, double deg) {
+  const std::vector<Eigen::Matrix3d> group = symmetry_rotations("D8");
+  int right = 0, pairs = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    for (std::size_t j = i + 1; j < truth.size(); ++j, ++pairs) {
+      const Eigen::Matrix3d gi = r.view[i].template_from_view.rotation * truth[i].transpose();
+      const Eigen::Matrix3d gj = r.view[j].template_from_view.rotation * truth[j].transpose();
+      const Eigen::Matrix3d relative = gi.transpose() * gj;
+      right += std::any_of(group.begin(), group.end(), [&](const Eigen::Matrix3d& g) {
+        return geodesic_angle(relative, g) * 57.29578 < deg;
+      });
+    }
+  return static_cast<double>(right) / pairs;
+}
+
+TEST(RegisterViews, findsPoresInRandomOrientations) {
+  const Simulated s = simulated(small(3));
+  Progress silent;
+  const Registration r = register_views(s.views, {}, silent);
+  EXPECT_GT(recall(r, s.structure_from_view, 10), 0.9);
+  EXPECT_EQ(r.view.size(), 40u);
+  EXPECT_NEAR(r.calibration.lateral_factor, 1, 0.35);
+  int winners = 0;
+  for (const auto& start : r.starts) winners += start.won;
+  EXPECT_EQ(winners, 1);
+}
+
+TEST(RegisterViews, givesTheSameBitsForAnyNumberOfThreads) {
+  const Simulated s = simulated(small(4));
+  RegistrationOptions options;
+  options.starts = {"imaged"};
+  Progress silent;
+  Registration one, two;
+  {
+    const ThreadLimit limit(1);
+    one = register_views(s.views, options, silent);
+  }
+  {
+    const ThreadLimit limit(3);
+    two = register_views(s.views, options, silent);
+  }
+  for (std::size_t i = 0; i < one.view.size(); ++i) {
+    EXPECT_EQ(one.view[i].template_from_view.rotation, two.view[i].template_from_view.rotation) << i;
+    EXPECT_EQ(one.view[i].template_from_view.translation, two.view[i].template_from_view.translation) << i;
+    EXPECT_EQ(one.view[i].log_likelihood, two.view[i].log_likelihood) << i;
+  }
+}
+
+TEST(RegisterViews, planarDataStaysInItsPlane) {
+  SimulationOptions o = small(6);
+  o.planar = true;
+  o.orientation = "in_plane";
+  const Simulated s = simulated(o);
+  Progress silent;
+  const Registration r = register_views(s.views, {}, silent);
+  for (const auto& v : r.view) {
+    EXPECT_NEAR(v.template_from_view.rotation(2, 2), 1, 1e-9);
+    EXPECT_NEAR(v.template_from_view.translation.z(), 0, 1e-9);
+  }
+  EXPECT_GT(recall(r, s.structure_from_view, 10), 0.9);
+}
+
+TEST(RegisterViews, aViewWithTooFewLocalisationsIsNotAcceptedAndSaysWhy) {
+  Simulated s = simulated(small(7));
+  s.views.view[4].points.conservativeResize(3, 2);
+  s.views.view[4].covariance.resize(2);
+  s.views.view[5].points.resize(3, 0);
+  s.views.view[5].covariance.clear();
+  Progress silent;
+  const Registration r = register_views(s.views, {}, silent);
+  EXPECT_FALSE(r.view[4].accepted);
+  EXPECT_FALSE(r.view[5].accepted);
+  EXPECT_NE(r.view[4].reason.find("localisations"), std::string::npos);
+  EXPECT_TRUE(r.view[6].accepted);
+}
+
+TEST(RegisterFrom, trueOrFoundPosesEndAtTheSameLikelihood) {
+  const Simulated s = simulated(small(3));
+  Progress silent;
+  const Registration found = register_views(s.views, {}, silent);
+  std::vector<Pose> given;
+  for (const auto& v : found.view) given.push_back(v.template_from_view);
+  const Registration again = register_from(s.views, given, {}, silent);
+  EXPECT_GT(recall(again, s.structure_from_view, 10), 0.9);
+}
+
+TEST(Violations, nameTheKeyAndTheValue) {
+  RegistrationOptions o;
+  o.starts = {"random", "random", "guess"};
+  o.search = "slow";
+  const auto faults = violations(o);
+  ASSERT_EQ(faults.size(), 3u);
+  EXPECT_NE(faults[0].find("guess"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace polar
