@@ -2,7 +2,6 @@
 
 #include "config/fields.hpp"
 #include "config/paths.hpp"
-#include "polar/results/symmetry_group.hpp"
 #include "smlm/error.hpp"
 
 namespace polar {
@@ -51,17 +50,6 @@ void fields(Visitor& v, RunConfig& c) {
   });
 }
 
-// Empty when it can be imposed, or is to be detected.
-std::string symmetry_fault(const std::string& symmetry) {
-  if (symmetry == "detect") return {};
-  try {
-    symmetry_rotations(symmetry);
-    return {};
-  } catch (const smlm::Error& e) {
-    return e.what();
-  }
-}
-
 void require_word(std::vector<std::string>& faults, const char* key, const std::string& value,
                   const char* only) {
   if (value != only)
@@ -75,8 +63,6 @@ void check(const RunConfig& c, const std::string& path) {
   for (const std::string& v : violations(c.registration)) faults.push_back(v);
   require_word(faults, "registration.method", c.method, "likelihood");
   require_word(faults, "registration.optimizer", c.optimizer, "levenberg_marquardt");
-  const std::string fault = symmetry_fault(c.registration.symmetry);
-  if (!fault.empty()) faults.push_back("registration." + fault);
   for (const std::string& format : c.output.formats)
     if (format != "hdf5" && format != "vtkhdf" && format != "csv")
       faults.push_back("output.formats holds '" + format + "', expected hdf5, vtkhdf or csv");

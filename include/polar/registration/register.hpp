@@ -15,7 +15,7 @@ struct RegistrationOptions {
   std::uint64_t seed = 1;                                  // every random choice follows from it
   std::vector<std::string> starts = {"random", "imaged"};  // hypotheses that compete
   std::string search = "fast";                             // fast | exhaustive
-  std::string symmetry = "none";                           // none | detect | C8 | D8 | T | O | I
+  std::string symmetry = "none";                           // none; nothing else can be imposed yet
 };
 
 /// One sentence per fault, empty when the options can be used.

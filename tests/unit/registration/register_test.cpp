@@ -127,9 +127,11 @@ TEST(Violations, nameTheKeyAndTheValue) {
   RegistrationOptions o;
   o.starts = {"random", "random", "guess"};
   o.search = "slow";
+  o.symmetry = "C8";
   const auto faults = violations(o);
-  ASSERT_EQ(faults.size(), 3u);
+  ASSERT_EQ(faults.size(), 4u);
   EXPECT_NE(faults[0].find("guess"), std::string::npos);
+  EXPECT_NE(faults[3].find("registration.symmetry"), std::string::npos);
 }
 
 }  // namespace
