@@ -138,8 +138,10 @@ nlohmann::json summary_json(const Results& r, const std::vector<std::string>& li
   nlohmann::json timings = nlohmann::json::array(), starts = nlohmann::json::array();
   for (const auto& t : g.timings) timings.push_back({{"stage", t.stage}, {"seconds", t.seconds}});
   for (const StartReport& s : g.starts)
-    starts.push_back(
-        {{"name", s.name}, {"held_out_log_likelihood", s.held_out_log_likelihood}, {"won", s.won}});
+    starts.push_back({{"name", s.name},
+                      {"held_out_log_likelihood", s.held_out_log_likelihood},
+                      {"final_held_out_log_likelihood", s.final_held_out_log_likelihood},
+                      {"won", s.won}});
   return {{"program", r.provenance.program},
           {"input_hash", r.provenance.input_hash},
           {"seed", r.provenance.seed},

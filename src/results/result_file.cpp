@@ -149,7 +149,7 @@ void write_run(File& file, const Results& r) {
   warnings.insert(warnings.end(), g.warnings.begin(), g.warnings.end());
   file.write_strings("/run/warnings", warnings);
   std::vector<std::string> stage, start;
-  std::vector<double> seconds, held_out;
+  std::vector<double> seconds, held_out, final_held_out;
   std::vector<std::uint8_t> won;
   for (const auto& t : g.timings) {
     stage.push_back(t.stage);
@@ -158,12 +158,14 @@ void write_run(File& file, const Results& r) {
   for (const StartReport& s : g.starts) {
     start.push_back(s.name);
     held_out.push_back(s.held_out_log_likelihood);
+    final_held_out.push_back(s.final_held_out_log_likelihood);
     won.push_back(s.won ? 1 : 0);
   }
   file.write_strings("/run/timings/stage", stage);
   file.write("/run/timings/seconds", seconds);
   file.write_strings("/run/starts/name", start);
   file.write("/run/starts/held_out_log_likelihood", held_out);
+  file.write("/run/starts/final_held_out_log_likelihood", final_held_out);
   file.write("/run/starts/won", won);
   const double scale_nm = r.normalisation.scale_nm;
   file.make_group("/run/calibration");
