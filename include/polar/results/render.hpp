@@ -14,11 +14,11 @@ namespace polar {
 
 struct RenderOptions {
   double voxel_nm = 0;  // edge of a voxel; 0: half the median of the smallest standard deviations
+  /// No axis gets more voxels than this: the voxel grows instead.
+  std::size_t most_voxels_per_axis = 256;
   /// sigma_eff^2 = factor^2 sigma^2 + extra^2 across and along the axis of a particle's uncertainties: draws the
   /// precision that the data showed (Registration::calibration), not the one that the table states.
   double lateral_factor = 1, axial_factor = 1, lateral_extra_nm = 0, axial_extra_nm = 0;
-  /// No axis gets more voxels than this: the voxel grows instead.
-  std::size_t most_voxels_per_axis = 256;
 };
 
 /// Localisations per nm^3 (planar: per nm^2, one slice), slowest axis z, then y, then x.
