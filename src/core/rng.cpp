@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/so3.hpp"
 
 namespace polar {
@@ -10,7 +11,6 @@ namespace {
 constexpr std::uint32_t kMultiply0 = 0xD2511F53, kMultiply1 = 0xCD9E8D57;
 constexpr std::uint32_t kWeyl0 = 0x9E3779B9, kWeyl1 = 0xBB67AE85;
 constexpr int kRounds = 10;
-constexpr double kTwoPi = 6.28318530717958647692;
 constexpr double kLargeMean = 30.0;  // exp(-30) is still far from underflow
 
 std::uint32_t low(std::uint64_t v) { return static_cast<std::uint32_t>(v); }

@@ -3,10 +3,11 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "polar/core/constants.hpp"
+
 namespace polar {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 // Below this angle the Taylor series of sin(a)/a and (1-cos(a))/a^2 to second order is exact in double.
 constexpr double kSmallAngle = 1e-4;
 }  // namespace

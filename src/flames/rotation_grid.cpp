@@ -2,10 +2,11 @@
 
 #include <cmath>
 
+#include "polar/core/constants.hpp"
+
 namespace polar {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kPhi = 1.41421356237309504880;         // sqrt(2)
 constexpr double kPsi = 1.533751168755204288118041413;  // real root of psi^4 = psi + 4 (Alexa 2022)
 }  // namespace

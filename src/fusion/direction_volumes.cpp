@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "mixture_kernel_choice.hpp"
+#include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 
 namespace polar {
 
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
-constexpr float kTwoPi = 2 * kPi;
+constexpr float kTwoPiF = static_cast<float>(kTwoPi);
 constexpr float kGoldenAngle = 2.39996322972865f;
 constexpr float kVoxelPerSigma =
     0.8f;  // voxel over the sharpest standard deviation: nearest look-up errs by .23 of it
@@ -129,7 +129,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
   const auto background =
       static_cast<float>(std::max(mixture.outlier_fraction * mixture.outlier_density, 1e-12));
   zero_ = std::log(background);
-  const float highest = kTwoPi * sharpest * sharpest * (planar ? 1 : std::sqrt(kTwoPi) * sharpest);
+  const float highest = kTwoPiF * sharpest * sharpest * (planar ? 1 : std::sqrt(kTwoPiF) * sharpest);
   scale_ = 32000.0f / std::max(1.0f, std::log(1.0f / highest + background) - zero_);
 
   const auto inlier = static_cast<float>(1 - mixture.outlier_fraction);
@@ -144,7 +144,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
       c = (2 * lat2 + ax2) / 3 * Eigen::Matrix3f::Identity();
     const Eigen::Matrix3f p = c.inverse();
     const float norm =
-        planar ? 1 / (kTwoPi * lat2) : 1 / std::sqrt(kTwoPi * kTwoPi * kTwoPi * c.determinant());
+        planar ? 1 / (kTwoPiF * lat2) : 1 / std::sqrt(kTwoPiF * kTwoPiF * kTwoPiF * c.determinant());
     const Eigen::Vector3f reach = kReach * c.diagonal().cwiseSqrt() / voxel_;
     // Rows along x: q(i) = a + b i + c i^2 with i in voxels from the volume's edge.
     const float cxx = p(0, 0) * voxel_ * voxel_;

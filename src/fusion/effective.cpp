@@ -6,11 +6,12 @@
 #include <cmath>
 
 #include "localisations.hpp"
+#include "polar/core/constants.hpp"
 
 namespace polar {
 
 namespace {
-constexpr float kTwoPi = 6.28318530717958647692f;
+constexpr float kTwoPiF = static_cast<float>(kTwoPi);
 constexpr float kCutOff = 4.0f;              // standard deviations; as in the kernel
 constexpr float kNearlyIsotropic = 1.02f;    // ratio of standard deviations below which no axis is told apart
 constexpr float kSmallestVariance = 1e-10f;  // (1e-5 of the particle radius)^2: "exact" localisations
@@ -73,7 +74,7 @@ KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f
            c[0] / det,
            0,
            0,
-           1.0f / (kTwoPi * std::sqrt(det)),
+           1.0f / (kTwoPiF * std::sqrt(det)),
            1.0f / std::sqrt(std::max(half - spread, kSmallestVariance)),
            kCutOff * std::sqrt(half + spread)};
       continue;
@@ -92,7 +93,7 @@ KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f
          p(1, 1),
          p(1, 2),
          p(2, 2),
-         1.0f / std::sqrt(kTwoPi * kTwoPi * kTwoPi * m.determinant()),
+         1.0f / std::sqrt(kTwoPiF * kTwoPiF * kTwoPiF * m.determinant()),
          std::sqrt(sharpest),
          kCutOff * std::sqrt(largest)};
   }

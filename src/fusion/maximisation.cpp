@@ -86,7 +86,7 @@ Sums sums_of(const BlockedMixture& blocked, std::size_t centres, const FusionDat
 }
 
 // Sows the weakest centres anew beside strong ones, each strong one used once a step.
-int sow_again(Mixture& mixture, const std::vector<double>& strength, const MaximisationOptions& options) {
+void sow_again(Mixture& mixture, const std::vector<double>& strength, const MaximisationOptions& options) {
   const std::size_t n = strength.size();
   const double mean = std::accumulate(strength.begin(), strength.end(), 0.0) / static_cast<double>(n);
   std::vector<std::size_t> order(n);
@@ -94,8 +94,7 @@ int sow_again(Mixture& mixture, const std::vector<double>& strength, const Maxim
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return strength[a] < strength[b]; });
   KeyedRandom random(options.seed, 0, kSowingStage);
-  int sown = 0;
-  for (std::size_t i = 0; i < n / 2 && strength[order[i]] < options.weakest_share * mean; ++i, ++sown) {
+  for (std::size_t i = 0; i < n / 2 && strength[order[i]] < options.weakest_share * mean; ++i) {
     const auto weak = static_cast<Eigen::Index>(order[i]),
                strong = static_cast<Eigen::Index>(order[n - 1 - i]);
     Eigen::Vector3d away = random.direction();
@@ -104,7 +103,6 @@ int sow_again(Mixture& mixture, const std::vector<double>& strength, const Maxim
     const float half = 0.5f * mixture.weight[strong];
     if (options.free_weights) mixture.weight[strong] = mixture.weight[weak] = half;
   }
-  return sown;
 }
 
 }  // namespace
@@ -143,10 +141,9 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
   mixture.outlier_fraction = std::clamp(
       (sums.localisations - sums.inliers + kPseudoOutliers) / (sums.localisations + kPseudoLocalisations),
       options.smallest_outlier_fraction, 0.95);
-  MaximisationReport report{sums.log_likelihood, sums.localisations, 0};
-  report.reseeded = sow_again(mixture, strength, options);
+  sow_again(mixture, strength, options);
   sort_into_blocks(mixture);
-  return report;
+  return {sums.log_likelihood, sums.localisations};
 }
 
 }  // namespace polar

@@ -34,6 +34,9 @@ std::vector<std::vector<float>> occupancy(const Mixture& mixture, const FusionDa
   const auto centres = static_cast<std::size_t>(mixture.size());
   const auto padded = static_cast<std::size_t>(blocked.padded_size());
   const auto near = neighbours_within(mixture, reach);
+  std::vector<double> share(centres, 0.0);
+  for (std::size_t k = 0; k < centres; ++k)
+    for (const std::size_t l : near[k]) share[k] += mixture.weight[static_cast<Eigen::Index>(l)];
   parallel_for(evidence.size(), [&](std::size_t i) {
     const KernelLocalisations& view = evidence.impl().view[i];
     if (view.empty()) return;
@@ -52,14 +55,10 @@ std::vector<std::vector<float>> occupancy(const Mixture& mixture, const FusionDa
       for (std::size_t k = 0; k < centres; ++k) total += static_cast<double>(sums[k]);
       const double prior = strength * static_cast<double>(centres);
       for (std::size_t k = 0; k < centres; ++k) {
-        const float w = mixture.weight[static_cast<Eigen::Index>(k)];
-        if (w < kLeastWeight) continue;
-        double seen = 0, share = 0;
-        for (const std::size_t l : near[k]) {
-          seen += static_cast<double>(sums[l]);
-          share += static_cast<double>(mixture.weight[static_cast<Eigen::Index>(l)]);
-        }
-        factor[k] = static_cast<float>((seen / share + prior) / (total + prior));
+        if (mixture.weight[static_cast<Eigen::Index>(k)] < kLeastWeight) continue;
+        double seen = 0;
+        for (const std::size_t l : near[k]) seen += static_cast<double>(sums[l]);
+        factor[k] = static_cast<float>((seen / share[k] + prior) / (total + prior));
       }
     }
     factors[i] = std::move(factor);

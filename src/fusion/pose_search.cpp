@@ -16,8 +16,6 @@ constexpr double kNeighbourShare = 256.0 / 50000.0;
 constexpr int kFewestNeighbours = 10;
 constexpr int kPlanarNeighbours = 12;
 constexpr int kWorthCaching = 4000;  // rotations; smaller graphs are built in no time
-constexpr double kGroupVolume =
-    2 * 3.14159265358979 * 3.14159265358979;  // of SO(3), rad^3... as unit of spacing
 
 void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen::Matrix3f& rotation,
            float step, Eigen::Vector3f& translation, float& best) {
@@ -46,7 +44,6 @@ SearchGrid search_grid(int rotations, bool planar) {
   grid.graph =
       rotations >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory()) : neighbour_graph(q, k);
   for (const Eigen::Quaternionf& r : q) grid.rotation.push_back(r.toRotationMatrix());
-  grid.spacing = planar ? 2 * 3.14159265358979 / rotations : std::cbrt(4 * kGroupVolume / rotations);
   return grid;
 }
 

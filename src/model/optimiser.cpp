@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "model/kernel_table.hpp"
+#include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 
 namespace polar {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kBeta1 = 0.9, kBeta2 = 0.999;  // the usual ones, also those of the reference
 constexpr float kEpsilon = 1e-8f;
 constexpr double kImprovement = 1e-4;    // relative; smaller gains do not count on a plateau

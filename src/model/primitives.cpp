@@ -6,10 +6,11 @@
 #include <memory>
 #include <utility>
 
+#include "polar/core/constants.hpp"
+
 namespace polar {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 using Eigen::Vector3d;
 
 double between(KeyedRandom& r, double low, double high) { return low + (high - low) * r.uniform(); }

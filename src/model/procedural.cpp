@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "model/primitives.hpp"
+#include "polar/core/constants.hpp"
 
 namespace polar {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Parts = std::vector<Part>;

@@ -23,14 +23,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void check(const TrainOptions& options) {
-  const std::vector<std::string> faults = violations(options);
-  if (faults.empty()) return;
-  std::string all;
-  for (const std::string& fault : faults) all += (all.empty() ? "" : "; ") + fault;
-  throw smlm::Error(smlm::Fault::usage, "training options", all);
-}
-
 std::string report_line(const TrainState& state, const TrainOptions& options, double clouds_per_second) {
   const double left =
       static_cast<double>(options.steps - state.step) * options.clouds_per_step / clouds_per_second;
@@ -51,7 +43,7 @@ std::string about(const TrainOptions& options, const TrainState& state) {
 }  // namespace
 
 TrainReport train(const TrainOptions& options, Progress& progress) {
-  check(options);
+  smlm::throw_if_any(violations(options), smlm::Fault::usage, "training options");
   const ShapeSet shapes = read_shapes(options.data.shapes, kCleanPoints);
   const bool resume = !options.checkpoint.empty() && std::ifstream(options.checkpoint).good();
   TrainState state = resume ? read_checkpoint(options.checkpoint, options) : initial_state(options);

@@ -68,9 +68,7 @@ void check(const RunConfig& c, const std::string& path) {
       faults.push_back("output.formats holds '" + format + "', expected hdf5, vtkhdf or csv");
   if (!(c.output.voxel_nm >= 0)) faults.emplace_back("output.voxel_nm must be 0 or more");
   if (c.output.directory.empty()) faults.emplace_back("output.directory is empty");
-  std::string all;
-  for (const std::string& f : faults) all += (all.empty() ? "" : "; ") + f;
-  if (!all.empty()) throw smlm::Error(smlm::Fault::usage, path, all);
+  smlm::throw_if_any(faults, smlm::Fault::usage, path);
 }
 }  // namespace
 

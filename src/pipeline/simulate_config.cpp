@@ -56,9 +56,7 @@ void check(const SimulateConfig& c, const std::string& path) {
   for (const std::string& fault : violations(c.simulation)) faults.push_back("simulation." + fault);
   if (c.format != "csv" && c.format != "picasso")
     faults.push_back("output.format is '" + c.format + "', expected csv or picasso");
-  std::string all;
-  for (const std::string& fault : faults) all += (all.empty() ? "" : "; ") + fault;
-  if (!all.empty()) throw smlm::Error(smlm::Fault::usage, path, all);
+  smlm::throw_if_any(faults, smlm::Fault::usage, path);
 }
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "polar/core/constants.hpp"
 #include "polar/results/picasso.hpp"
 #include "polar/results/pose_table.hpp"
 #include "polar/results/table_csv.hpp"
@@ -16,7 +17,6 @@
 namespace polar {
 
 namespace {
-constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 constexpr const char* kTruthFile = "truth.json";
 
 std::vector<PoseRow> true_poses(const Simulation& s, bool with_bound) {

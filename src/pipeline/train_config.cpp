@@ -58,9 +58,7 @@ TrainOptions load_train_options(const std::string& path, const std::vector<std::
   pipeline::FieldReader reader(root, path);
   fields(reader, options);
   reader.finish();
-  std::string all;
-  for (const std::string& fault : violations(options)) all += (all.empty() ? "" : "; ") + fault;
-  if (!all.empty()) throw smlm::Error(smlm::Fault::usage, path, all);
+  smlm::throw_if_any(violations(options), smlm::Fault::usage, path);
   const std::string folder = pipeline::folder_of(path);
   options.data.shapes = pipeline::expand_files(options.data.shapes, folder);
   options.score_shapes = pipeline::expand_files(options.score_shapes, folder);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/fusion/maximisation.hpp"
@@ -16,7 +17,6 @@ constexpr std::uint32_t kFirstPoseStage = 21, kTurnStage = 23, kDrawStage = 24;
 constexpr int kSigmaClasses = 2;  // a wide template hardly tells uncertainties apart
 constexpr int kPlanarRotations = 90;
 constexpr std::size_t kMostViews = 64, kMostLocalisations = 96, kMostHeldOut = 64;
-constexpr double kPi = 3.14159265358979323846;
 
 double interpolate(double first, double last, double t) { return first * std::pow(last / first, t); }
 

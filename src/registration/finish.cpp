@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "polar/fusion/calibration.hpp"
 #include "polar/fusion/discretise.hpp"
@@ -39,15 +38,20 @@ std::vector<std::vector<float>> occupancy_of(const RoundState& state, const Fusi
   return occupancy(state.mixture, evidence, state.pose, state.occupancy, reach_of(noise));
 }
 
+// A centre that dies stays dead: the number of sites is being found.
+MaximisationOptions final_fusion() {
+  MaximisationOptions em;
+  em.free_weights = true;
+  em.weakest_share = 0;
+  return em;
+}
+
 void fuse(const Problem& problem, const NoiseModel& noise, const Subsets& subsets, int sweeps,
           RoundState& state) {
   FusionData data(problem.views, problem.axes, noise, subsets);
-  MaximisationOptions em;
-  em.free_weights = true;
-  em.weakest_share = 0;  // a centre that dies stays dead: the number of sites is being found
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     data.set_visibility(occupancy_of(state, data, noise));
-    maximise(state.mixture, data, state.pose, em);
+    maximise(state.mixture, data, state.pose, final_fusion());
     data.set_visibility(occupancy_of(state, data, noise));
     refine_poses(state.mixture, data, state.pose, 2);
   }
@@ -60,26 +64,26 @@ Subsets decision_subset(const Problem& problem) {
 
 // How much a view's own occupancy is believed: judged by localisations that did not estimate it. Infinite
 // where views show the whole template. Returns the mean log density of the held-out localisations.
-double choose_occupancy(const Problem& problem, const NoiseModel& noise, RoundState& state) {
-  const FusionData fitted(problem.views, problem.axes, noise, decision_subset(problem));
+double choose_occupancy(const Problem& problem, const Subsets& few, const NoiseModel& noise,
+                        RoundState& state) {
+  const FusionData fitted(problem.views, problem.axes, noise, few);
   FusionData judged(problem.views, problem.axes, noise, problem.held_out);
-  double count = 0, best = -std::numeric_limits<double>::infinity();
-  for (const auto& s : problem.held_out) count += static_cast<double>(s.size());
+  double best = -std::numeric_limits<double>::infinity();
   for (const double strength : {std::numeric_limits<double>::infinity(), 1.0, 0.3, 0.1, 0.03}) {
     judged.set_visibility(occupancy(state.mixture, fitted, state.pose, strength, reach_of(noise)));
-    const std::vector<double> mean = mean_log_likelihood(state.mixture, judged, state.pose);
-    double score = 0;
-    for (std::size_t i = 0; i < mean.size(); ++i)
-      score += mean[i] * static_cast<double>(problem.held_out[i].size()) / count;
+    const double score =
+        mean_per_localisation(mean_log_likelihood(state.mixture, judged, state.pose), problem.held_out);
     if (score > best) best = score, state.occupancy = strength;
   }
   return best;
 }
 
-NoiseModel calibrated(const Problem& problem, const NoiseModel& noise, const RoundState& state) {
-  const FusionData fitted(problem.views, problem.axes, noise, decision_subset(problem));
-  return calibrate(problem.views, problem.axes, problem.held_out, state.mixture, state.pose, noise,
-                   occupancy_of(state, fitted, noise))
+NoiseModel calibrated(const Problem& problem, const Subsets& few, const NoiseModel& noise,
+                      const RoundState& state) {
+  std::vector<std::vector<float>> factors;
+  if (std::isfinite(state.occupancy))
+    factors = occupancy_of(state, FusionData(problem.views, problem.axes, noise, few), noise);
+  return calibrate(problem.views, problem.axes, problem.held_out, state.mixture, state.pose, noise, factors)
       .noise;
 }
 
@@ -88,7 +92,7 @@ NoiseModel calibrated(const Problem& problem, const NoiseModel& noise, const Rou
 NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noise, RoundState& state) {
   const Subsets few = decision_subset(problem);
   for (int cycle = 0; cycle < cycles; ++cycle) {
-    noise = calibrated(problem, noise, state);
+    noise = calibrated(problem, few, noise, state);
     fuse(problem, noise, few, kFuseSweeps, state);
   }
   return noise;
@@ -96,7 +100,7 @@ NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noi
 
 NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state) {
   const Subsets few = decision_subset(problem);
-  double best_score = choose_occupancy(problem, noise, state);
+  double best_score = choose_occupancy(problem, few, noise, state);
   RoundState best = state;
   NoiseModel best_noise = noise;
   for (const double factor : kMergeFactors) {
@@ -107,8 +111,8 @@ NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, Round
     double score = 0;
     for (int cycle = 0; cycle < 2; ++cycle) {
       fuse(problem, trial_noise, few, kMergedSweeps / 2, trial);
-      trial_noise = calibrated(problem, trial_noise, trial);
-      score = choose_occupancy(problem, trial_noise, trial);
+      trial_noise = calibrated(problem, few, trial_noise, trial);
+      score = choose_occupancy(problem, few, trial_noise, trial);
     }
     if (score < best_score - kHopeless) break;
     if (score < best_score - kMergeTolerance) continue;
@@ -123,14 +127,11 @@ NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, Round
 void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& state, Registration& out) {
   FusionData data(problem.views, problem.axes, noise, problem.shuffled);
   std::vector<PolishedPose> polished;
-  MaximisationOptions em;
-  em.free_weights = true;
-  em.weakest_share = 0;
   for (int round = 0; round < kPolishRounds; ++round) {
     data.set_visibility(occupancy_of(state, data, noise));
     polished = polish(state.mixture, data, state.pose);
     for (std::size_t i = 0; i < polished.size(); ++i) state.pose[i] = polished[i].template_from_view;
-    if (round + 1 < kPolishRounds) maximise(state.mixture, data, state.pose, em);
+    if (round + 1 < kPolishRounds) maximise(state.mixture, data, state.pose, final_fusion());
   }
   out.view.resize(problem.size());
   for (std::size_t i = 0; i < problem.size(); ++i) {

@@ -100,8 +100,9 @@ std::vector<std::string> violations(const RegistrationOptions& options) {
   if (options.search != "fast" && options.search != "exhaustive")
     faults.push_back("registration.search: '" + options.search + "' is neither fast nor exhaustive");
   if (options.symmetry != "none")
-    faults.push_back("registration.symmetry: '" + options.symmetry +
-                     "' cannot be imposed yet; use none, and polar evaluate --symmetry to score modulo a group");
+    faults.push_back(
+        "registration.symmetry: '" + options.symmetry +
+        "' cannot be imposed yet; use none, and polar evaluate --symmetry to score modulo a group");
   return faults;
 }
 

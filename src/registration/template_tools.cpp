@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
 
 namespace polar {
@@ -10,7 +11,6 @@ namespace polar {
 namespace {
 constexpr std::uint32_t kFirstCentreStage = 22;
 constexpr double kOutlierRadius = 1.5;  // particle radii: the ball (disc) of the uniform class
-constexpr double kPi = 3.14159265358979323846;
 }  // namespace
 
 double first_outlier_fraction(bool crowded) { return crowded ? 0.4 : 0.05; }
@@ -52,16 +52,19 @@ double held_out_score(const Problem& problem, const Subsets& held_out, const std
          static_cast<double>(std::max<std::size_t>(1, mean.size()));
 }
 
+double mean_per_localisation(const std::vector<double>& mean_of_view, const Subsets& judged) {
+  double total = 0, count = 0;
+  for (std::size_t i = 0; i < mean_of_view.size(); ++i) {
+    const auto n = static_cast<double>(judged[i].size());
+    total += n * mean_of_view[i], count += n;
+  }
+  return total / std::max(1.0, count);
+}
+
 double held_out_score(const Problem& problem, const Mixture& mixture, const std::vector<Pose>& pose,
                       const NoiseModel& noise) {
   const FusionData data(problem.views, problem.axes, noise, problem.held_out, problem.all);
-  const std::vector<double> mean = mean_log_likelihood(mixture, data, pose);
-  double total = 0, count = 0;
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    const auto n = static_cast<double>(problem.held_out[i].size());
-    total += n * mean[i], count += n;
-  }
-  return total / std::max(1.0, count);
+  return mean_per_localisation(mean_log_likelihood(mixture, data, pose), problem.held_out);
 }
 
 }  // namespace polar

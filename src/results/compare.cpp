@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/results/symmetry_group.hpp"
@@ -12,14 +13,14 @@
 namespace polar {
 
 namespace {
-constexpr double kDeg = 3.14159265358979323846 / 180.0;
 constexpr std::uint32_t kPairStage = 0x71, kHypothesisStage = 0x72;
 constexpr std::size_t kAllPairsUpTo = 2000;     // particles; above, pairs are sampled
 constexpr std::size_t kSampledPairs = 2000000;  // the recall's own error is then below 0.1 %
 constexpr std::size_t kHypotheses = 200;        // particles tried as the global motion
 constexpr std::size_t kPairBlock = 4096;
 constexpr int kWeiszfeldSteps = 30;
-constexpr double kSmallest_rad = 0.02 * kDeg, kSmallest_nm = 1e-3;  // keep Weiszfeld's weights finite
+constexpr double kSmallest_rad = 0.02 * kRadiansPerDegree,
+                 kSmallest_nm = 1e-3;  // keep Weiszfeld's weights finite
 
 using Group = std::vector<Eigen::Quaterniond>;
 
@@ -89,8 +90,8 @@ std::vector<double> pair_angles_deg(const std::vector<Difference>& d, const Grou
   std::vector<double> angle(pair.size());
   parallel_blocks(pair.size(), kPairBlock, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t p = begin; p < end; ++p)
-      angle[p] =
-          angle_modulo(group, d[pair[p].first].rotation.conjugate() * d[pair[p].second].rotation) / kDeg;
+      angle[p] = angle_modulo(group, d[pair[p].first].rotation.conjugate() * d[pair[p].second].rotation) /
+                 kRadiansPerDegree;
   });
   return angle;
 }
@@ -105,7 +106,7 @@ Eigen::Quaterniond best_hypothesis(const std::vector<Difference>& d, const Group
   for (std::size_t h = 0; h < tries; ++h) chosen[h] = d.size() <= kHypotheses ? h : random.below(d.size());
   parallel_for(tries, [&](std::size_t h) {
     for (const Difference& other : d)
-      cost[h] += std::min(kAlignedWithin_deg * kDeg,
+      cost[h] += std::min(kAlignedWithin_deg * kRadiansPerDegree,
                           angle_modulo(group, d[chosen[h]].rotation.conjugate() * other.rotation));
   });
   const auto best = std::min_element(cost.begin(), cost.end()) - cost.begin();
@@ -121,7 +122,7 @@ Eigen::Quaterniond refined(Eigen::Quaterniond global, const std::vector<Differen
       const Eigen::Quaterniond relative = global.conjugate() * other.rotation;
       const Eigen::Quaterniond rest = relative * nearest(group, relative).conjugate();
       const double a = angle_rad(rest);
-      if (a > kAlignedWithin_deg * kDeg) continue;
+      if (a > kAlignedWithin_deg * kRadiansPerDegree) continue;
       const double weight = 1 / std::max(a, kSmallest_rad);
       const Eigen::Vector3d axis = rest.vec() * (rest.w() < 0 ? -1 : 1);
       if (axis.norm() > 0) sum += weight * a * axis.normalized();
@@ -170,7 +171,7 @@ void compare_particles(const std::vector<Difference>& d, const Group& group, std
   std::vector<double> rotation_deg, translation_nm;
   std::vector<Eigen::Vector3d> centre_nm;
   for (const Difference& x : d) {
-    rotation_deg.push_back(angle_modulo(group, global.conjugate() * x.rotation) / kDeg);
+    rotation_deg.push_back(angle_modulo(group, global.conjugate() * x.rotation) / kRadiansPerDegree);
     if (rotation_deg.back() <= kAlignedWithin_deg) centre_nm.push_back(x.translation);
   }
   out.global_motion = {global.toRotationMatrix(), geometric_median(centre_nm)};

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/fusion/effective.hpp"
 
 namespace polar {
 
 namespace {
-constexpr double kTwoPi = 6.28318530717958647692;
 constexpr double kReach = 4;        // Mahalanobis radius drawn: beyond lies 1.1e-3 of a Gaussian's mass
 constexpr double kLeftOut = 0.001;  // share of localisations that may lie outside the box, on each side
 constexpr double kSmallestVoxel_nm = 0.05;

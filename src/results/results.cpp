@@ -2,10 +2,11 @@
 
 #include <cmath>
 
+#include "polar/core/constants.hpp"
+
 namespace polar {
 
 namespace {
-constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 
 smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c) {
   Eigen::Matrix3d m;

@@ -3,13 +3,13 @@
 #include <charconv>
 #include <cmath>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/so3.hpp"
 #include "smlm/error.hpp"
 
 namespace polar {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kMostUnits = 360;
 constexpr double kSame = 1e-6;  // rad; the closest elements of the largest group are 2 pi / 360 apart
 

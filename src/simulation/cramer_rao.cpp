@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 
@@ -13,7 +14,6 @@ namespace polar {
 
 namespace {
 constexpr std::uint32_t kFisherStage = 0x51, kPairStage = 0x52;
-constexpr double kTwoPi = 6.28318530717958647692;
 constexpr double kUndetermined =
     1e-12;  // of the largest eigenvalue: double precision's floor for a sum of squares
 

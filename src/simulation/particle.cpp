@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 
 namespace polar::simulation {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 // One stream a purpose: more blinks must not change the poses.
 enum Stage : std::uint32_t { kPoseStage = 0x41, kLabelStage, kCropStage, kOutlierStage, kNoiseStage };
 
@@ -27,7 +27,7 @@ Pose draw_view_from_structure(const SimulationOptions& o, std::uint64_t index) {
   if (o.orientation == "random_so3") pose.rotation = random.rotation();
   if (o.orientation == "in_plane") {
     const Eigen::Vector3d turn(0, 0, 2 * kPi * random.uniform());
-    const double tilt = o.tilt_std_deg * kPi / 180;
+    const double tilt = o.tilt_std_deg * kRadiansPerDegree;
     const Eigen::Vector3d tilted(tilt * random.normal(), tilt * random.normal(), 0);
     pose.rotation = so3_exp(tilted) * so3_exp(turn);
   }

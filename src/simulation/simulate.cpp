@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "particle.hpp"
+#include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/simulation/cramer_rao.hpp"
@@ -12,7 +13,6 @@
 namespace polar {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint32_t kFrameStage = 0x61;
 constexpr std::uint64_t kFrames = 20000;
 constexpr double kPsf_nm = 130;  // sigma = psf / sqrt(photons), the leading term of the localisation error
@@ -60,8 +60,7 @@ void append(Simulation& out, const simulation::ParticleDraw& particle, const Sim
 }  // namespace
 
 Simulation simulate(const Structure& structure, const SimulationOptions& o) {
-  const std::vector<std::string> faults = violations(o);
-  if (!faults.empty()) throw smlm::Error(smlm::Fault::usage, "", faults.front());
+  smlm::throw_if_any(violations(o), smlm::Fault::usage, "");
   if (structure.site_nm.cols() == 0)
     throw smlm::Error(smlm::Fault::input, structure.name, "the structure has no sites");
   const Structure s = projected(structure, o.planar);

@@ -2,13 +2,12 @@
 
 #include <cmath>
 
+#include "polar/core/constants.hpp"
 #include "smlm/error.hpp"
 
 namespace polar {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDeg = kPi / 180.0;
 
 // Nup96 (Thevathasan et al. 2019).
 constexpr double kPoreRadius_nm = 53.5, kPoreSeparation_nm = 50.0, kCornerPair_nm = 12.0,
@@ -41,7 +40,8 @@ Structure nuclear_pore(const StructureOptions& o) {
     for (int u = 0; u < units; ++u)
       for (const double member : {1.0, -1.0})  // symmetric about x: a half turn about x swaps the rings
         site.push_back(on_circle(
-            radius, 2 * kPi * u / units + side * kPoreTwist_deg * kDeg / 2 + member * pair, side * half));
+            radius, 2 * kPi * u / units + side * kPoreTwist_deg * kRadiansPerDegree / 2 + member * pair,
+            side * half));
   return {"nuclear_pore", as_matrix(site), "D" + std::to_string(units)};
 }
 
@@ -54,8 +54,8 @@ Structure centriole(const StructureOptions& o) {
   for (int u = 0; u < units; ++u) {
     const double angle = 2 * kPi * u / units;
     const Eigen::Vector3d outward = on_circle(1, angle, 0), along = on_circle(1, angle + kPi / 2, 0);
-    const Eigen::Vector3d blade =
-        std::cos(kTripletLean_deg * kDeg) * along + std::sin(kTripletLean_deg * kDeg) * outward;
+    const Eigen::Vector3d blade = std::cos(kTripletLean_deg * kRadiansPerDegree) * along +
+                                  std::sin(kTripletLean_deg * kRadiansPerDegree) * outward;
     for (int tubule = 0; tubule < 3; ++tubule)
       for (int s = 0; s <= steps; ++s)
         site.push_back(radius * outward + tubule * kTubulePitch_nm * blade +
@@ -100,8 +100,7 @@ std::vector<std::string> violations(const StructureOptions& o) {
 }
 
 Structure make_structure(const StructureOptions& options) {
-  const std::vector<std::string> faults = violations(options);
-  if (!faults.empty()) throw smlm::Error(smlm::Fault::usage, "", faults.front());
+  smlm::throw_if_any(violations(options), smlm::Fault::usage, "");
   if (options.kind == "nuclear_pore") return nuclear_pore(options);
   if (options.kind == "centriole") return centriole(options);
   if (options.kind == "ring") return ring(options);

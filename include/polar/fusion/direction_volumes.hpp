@@ -55,8 +55,6 @@ class DirectionVolumes {
   float score(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
               const Eigen::Vector3f& translation) const;
 
-  float voxel() const { return voxel_; }
-
  private:
   const std::int16_t* volume(int sigma_class, int direction) const;
 

@@ -25,7 +25,6 @@ struct MaximisationOptions {
 struct MaximisationReport {
   double log_likelihood = 0;  // before the step, sum over localisations
   double localisations = 0;
-  int reseeded = 0;
 };
 
 /// Poses are template_from_view, one a view of `data`. Expects and leaves the centres sorted into blocks;

@@ -14,7 +14,6 @@ namespace polar {
 struct SearchGrid {
   std::vector<Eigen::Matrix3f> rotation;  // template_from_view
   NeighbourGraph graph;
-  double spacing = 0;  // typical angle between neighbours, rad
 };
 
 /// Grid of about `rotations` rotations with the neighbourhood that reaches as far as 256 of 50,000 do;

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace smlm {
 
@@ -25,5 +26,12 @@ class Error : public std::runtime_error {
   }
   Fault fault_;
 };
+
+/// All faults of one place in one line, so that they are mended together; nothing where there are none.
+inline void throw_if_any(const std::vector<std::string>& faults, Fault fault, const std::string& where) {
+  std::string all;
+  for (const std::string& f : faults) all += (all.empty() ? "" : "; ") + f;
+  if (!all.empty()) throw Error(fault, where, all);
+}
 
 }  // namespace smlm

@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/pose.hpp"
 #include "polar/core/rng.hpp"
 
 namespace polar {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(So3, logarithmInvertsExponentialFromTinyToHalfTurns) {
   KeyedRandom random(1, 0, 0);

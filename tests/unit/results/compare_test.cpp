@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 #include "polar/results/symmetry_group.hpp"
@@ -11,8 +12,6 @@
 
 namespace polar {
 namespace {
-
-constexpr double kDeg = 3.14159265358979323846 / 180.0;
 
 struct Tables {
   std::vector<PoseRow> estimate, truth;
@@ -30,8 +29,9 @@ Tables make(std::size_t n, const std::string& symmetry, double error_deg, std::s
     row.particle = std::to_string(i);
     row.accepted = true;
     const Pose truth{random.rotation(), 100 * random.direction()};
-    const Pose turned{so3_exp(error_deg * kDeg * random.direction()) * group[random.below(group.size())],
-                      Eigen::Vector3d::Zero()};
+    const Pose turned{
+        so3_exp(error_deg * kRadiansPerDegree * random.direction()) * group[random.below(group.size())],
+        Eigen::Vector3d::Zero()};
     row.template_from_view = truth;
     t.truth.push_back(row);
     row.template_from_view = global * turned * truth;

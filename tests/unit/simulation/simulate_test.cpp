@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/so3.hpp"
 #include "polar/results/symmetry_group.hpp"
@@ -184,7 +185,7 @@ TEST(CramerRao, PlanarParticlesHaveThreeFreedoms) {
 TEST(CramerRao, PairMedianOfIsotropicErrors) {
   const double s = 0.01;
   const std::vector<Eigen::Matrix<double, 6, 6>> bound(50, s * s * Eigen::Matrix<double, 6, 6>::Identity());
-  const double expected = 1.5382 * s * std::sqrt(2.0) * 180 / 3.14159265358979323846;
+  const double expected = 1.5382 * s * std::sqrt(2.0) * kDegreesPerRadian;
   EXPECT_NEAR(pair_median_deg(bound, 1) / expected, 1, 0.03);
 }
 
