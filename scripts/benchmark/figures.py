@@ -1,0 +1,60 @@
+"""One figure a study, in the paper's form: recall over a sweep, cumulative distributions, seconds over views."""
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+from .runner import grouped, mean  # noqa: E402
+
+
+def lines_of(record, key):
+    """series -> (labels, means over objects)"""
+    out = {}
+    for (series, label), rows in grouped(record["points"]):
+        x, y = out.setdefault(series, ([], []))
+        x.append(label), y.append(mean(rows, key))
+    return out
+
+
+def sweep(axes, study, record):
+    for series, (x, y) in lines_of(record, "recall_10").items():
+        axes.plot(x, y, "o-", label=f"{series} 10°".strip())
+    if len(lines_of(record, "recall_10")) == 1:
+        for _, (x, y) in lines_of(record, "recall_5").items():
+            axes.plot(x, y, "s--", label="5°")
+    axes.set(xlabel=study.axis, ylabel="registration recall", ylim=(-0.02, 1.04))
+    axes.legend()
+
+
+def cdf(axes, study, record):
+    degrees = np.arange(1, 181)
+    for (series, label), rows in grouped(record["points"]):
+        axes.plot(degrees, np.mean([r["cdf"] for r in rows], axis=0), label=f"{series} {label}".strip())
+    axes.set(xscale="log", xlabel="relative rotation error (deg)", ylabel="share of pairs", ylim=(-0.02, 1.04))
+    axes.legend()
+
+
+def seconds(axes, study, record):
+    for _, (x, y) in lines_of(record, "wall_s").items():
+        axes.loglog(x, y, "o-", label="wall")
+    for _, (x, y) in lines_of(record, "cpu_s").items():
+        axes.loglog(x, y, "s--", label="processor")
+    axes.set(xlabel=study.axis, ylabel="seconds")
+    axes.legend()
+
+
+FIGURES = {"sweep": sweep, "cdf": cdf, "time": seconds}
+
+
+def draw(study, record, folder):
+    if study.kind not in FIGURES:
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    figure, axes = plt.subplots(figsize=(5, 3.4), constrained_layout=True)
+    FIGURES[study.kind](axes, study, record)
+    axes.set_title(f"{study.title} ({record['level']})", fontsize=10)
+    axes.grid(alpha=0.3)
+    # No date or library version in the file: the same numbers give the same bytes.
+    figure.savefig(folder / f"{study.name}.png", dpi=110, metadata={"Software": None})
+    plt.close(figure)
