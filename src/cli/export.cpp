@@ -36,7 +36,7 @@ void add_export(CLI::App& app, Action& action) {
   auto a = std::make_shared<Arguments>();
   CLI::App* sub = app.add_subcommand("export", "Write further formats from a result's record");
   sub->add_option("result", a->result, "result directory or results.h5")->required();
-  sub->add_option("--format", a->formats, "one or more formats")
+  sub->add_option("--to,--format", a->formats, "one or more formats")
       ->required()
       ->delimiter(',')
       ->check(CLI::IsMember(export_formats()));

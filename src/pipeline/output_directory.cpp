@@ -9,14 +9,13 @@
 #include <cstring>
 #include <filesystem>
 
+#include "polar/pipeline/outputs.hpp"
 #include "smlm/error.hpp"
 
 namespace polar::pipeline {
 
 namespace {
 constexpr const char* kLock = ".polar.lock";
-constexpr const char* kResultFiles[] = {"poses.csv",   "results.h5",  "aligned.hdf", "template.hdf",
-                                        "aligned.csv", "preview.png", "summary.json"};
 
 [[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) {
   throw smlm::Error(smlm::Fault::io, path, what, remedy);
@@ -56,7 +55,7 @@ OutputDirectory::~OutputDirectory() {
 }
 
 void OutputDirectory::remove_other_results(const std::vector<std::string>& written) const {
-  for (const char* name : kResultFiles) {
+  for (const std::string& name : result_files()) {
     if (std::find(written.begin(), written.end(), name) != written.end()) continue;
     std::error_code ignored;  // what cannot be removed will be reported by whoever replaces it
     std::filesystem::remove(file(name), ignored);

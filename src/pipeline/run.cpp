@@ -182,7 +182,8 @@ std::vector<std::string> write(const Results& r, const RunConfig& config,
   std::vector<std::string> written = {"poses.csv"};
   smlm::write_file_atomically(directory.file("poses.csv"), format_pose_table(pose_rows(r)));
   std::vector<std::string> formats = config.output.formats;
-  if (config.output.preview) formats.emplace_back("png");
+  if (config.output.preview && std::find(formats.begin(), formats.end(), "png") == formats.end())
+    formats.emplace_back("png");
   for (const std::string& format : formats) {
     if (format == "hdf5") {
       write_result_file(directory.file("results.h5"), r, aligned);

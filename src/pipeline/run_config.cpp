@@ -1,7 +1,10 @@
 #include "polar/pipeline/run_config.hpp"
 
+#include <algorithm>
+
 #include "config/fields.hpp"
 #include "config/paths.hpp"
+#include "polar/pipeline/outputs.hpp"
 #include "smlm/error.hpp"
 
 namespace polar {
@@ -56,6 +59,19 @@ void require_word(std::vector<std::string>& faults, const char* key, const std::
     faults.push_back(std::string(key) + " is '" + value + "', this version knows " + only + " only");
 }
 
+void check_formats(const std::vector<std::string>& formats, std::vector<std::string>& faults) {
+  std::vector<std::string> known = export_formats();
+  known.insert(known.begin(), "hdf5");
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  for (auto format = formats.begin(); format != formats.end(); ++format) {
+    if (std::find(known.begin(), known.end(), *format) == known.end())
+      faults.push_back("output.formats holds '" + *format + "', expected one of " + list);
+    if (std::find(formats.begin(), format, *format) != format)
+      faults.push_back("output.formats holds '" + *format + "' twice");
+  }
+}
+
 void check(const RunConfig& c, const std::string& path) {
   std::vector<std::string> faults;
   if (c.files.empty()) faults.emplace_back("input.files is missing: list the localisation tables");
@@ -63,9 +79,7 @@ void check(const RunConfig& c, const std::string& path) {
   for (const std::string& v : violations(c.registration)) faults.push_back(v);
   require_word(faults, "registration.method", c.method, "likelihood");
   require_word(faults, "registration.optimizer", c.optimizer, "levenberg_marquardt");
-  for (const std::string& format : c.output.formats)
-    if (format != "hdf5" && format != "vtkhdf" && format != "csv")
-      faults.push_back("output.formats holds '" + format + "', expected hdf5, vtkhdf or csv");
+  check_formats(c.output.formats, faults);
   if (!(c.output.voxel_nm >= 0)) faults.emplace_back("output.voxel_nm must be 0 or more");
   if (c.output.directory.empty()) faults.emplace_back("output.directory is empty");
   smlm::throw_if_any(faults, smlm::Fault::usage, path);

@@ -39,4 +39,12 @@ std::string csv_number(double value) {
   return {digits, end.ptr};
 }
 
+std::string csv_length(double value_nm) {
+  constexpr int kDecimals = 4;
+  char digits[400];  // a fixed-point double has up to 309 digits before the point
+  const auto end =
+      std::to_chars(digits, digits + sizeof digits, value_nm, std::chars_format::fixed, kDecimals);
+  return {digits, end.ptr};
+}
+
 }  // namespace polar::results

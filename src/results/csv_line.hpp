@@ -14,4 +14,7 @@ std::string csv_field(const std::string& text);
 /// Shortest digits that read back to the same double; empty for NaN.
 std::string csv_number(double value);
 
+/// A length in nm with four decimals (0.1 pm: far below any localisation's uncertainty), in any locale.
+std::string csv_length(double value_nm);
+
 }  // namespace polar::results

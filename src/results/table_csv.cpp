@@ -1,7 +1,6 @@
 #include "polar/results/table_csv.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "csv_line.hpp"
@@ -10,16 +9,8 @@
 namespace polar {
 
 namespace {
-constexpr int kDecimals = 4;  // 0.1 pm: far below any localisation's uncertainty
 // xx xy xz yy yz zz
 constexpr std::array<const char*, 6> kCovarianceNames = {"xx", "xy", "xz", "yy", "yz", "zz"};
-
-void append_length(std::string& text, double value) {
-  char digits[400];  // a fixed-point double has up to 309 digits before the point
-  const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, kDecimals);
-  text.append(digits, end.ptr);
-  text += ',';
-}
 
 bool diagonal(const smlm::LocalisationTable& table) {
   for (const smlm::Covariance& c : table.covariance_nm2)
@@ -57,10 +48,10 @@ std::string format_table_csv(const smlm::LocalisationTable& table) {
   std::string text = header(table, is_diagonal);
   for (std::size_t row = 0; row < table.size(); ++row) {
     for (std::size_t axis = 0; axis < (table.planar ? 2u : 3u); ++axis)
-      append_length(text, table.position_nm[row][axis]);
+      text += results::csv_length(table.position_nm[row][axis]) + ",";
     for (const std::size_t e : written) {
       const double value = double(table.covariance_nm2[row][e]);
-      append_length(text, is_diagonal ? std::sqrt(value) : value);
+      text += results::csv_length(is_diagonal ? std::sqrt(value) : value) + ",";
     }
     const std::int64_t particle = table.particle[row];
     if (particle >= 0) text += results::csv_field(table.particle_names[static_cast<std::size_t>(particle)]);

@@ -23,6 +23,7 @@ set(homes
   "hdf5=smlm/src/h5/"
   "matio=smlm/src/"
   "png.h=src/results/"
+  "tiffio.h=src/results/"
   "CLI/=src/cli/")
 
 function(check_file file layer)

@@ -9,10 +9,23 @@
 
 namespace polar {
 
-/// Formats that can be made from the superparticle alone, by a run or later by `polar export`.
+/// A format that can be made from the superparticle alone, by a run or later by `polar export`.
+struct OutputFormat {
+  std::string name;                // in output.formats and of `polar export --to`
+  std::vector<std::string> files;  // that it writes
+  void (*write)(const std::string& folder, const smlm::LocalisationTable& superparticle,
+                const RenderOptions& render);  // folder ends in a slash
+};
+
+const std::vector<OutputFormat>& output_formats();
+
+/// Their names.
 std::vector<std::string> export_formats();
 
-/// Writes the files of one of export_formats() into `directory`; returns their names.
+/// Every name in a result directory that a run may have written.
+std::vector<std::string> result_files();
+
+/// Writes the files of one of export_formats() into `directory`; returns their names. Throws smlm::Error.
 std::vector<std::string> write_format(const std::string& format, const std::string& directory,
                                       const smlm::LocalisationTable& superparticle,
                                       const RenderOptions& render);

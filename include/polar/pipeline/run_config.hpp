@@ -11,8 +11,8 @@ namespace polar {
 
 struct OutputOptions {
   std::string directory = "results";
-  /// Beside poses.csv and summary.json, which are always written: hdf5 (results.h5, the record), vtkhdf
-  /// (aligned.hdf, template.hdf), csv (aligned.csv).
+  /// Beside poses.csv and summary.json, which are always written: hdf5 (results.h5, the record) and any of
+  /// export_formats() (outputs.hpp).
   std::vector<std::string> formats = {"hdf5", "vtkhdf", "csv"};
   double voxel_nm = 0;  // of template.hdf and preview.png; 0: half the median uncertainty
   bool preview = true;  // preview.png

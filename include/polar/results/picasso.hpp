@@ -15,10 +15,11 @@ constexpr double kPicassoPixel_nm = 130;
 /// coordinates without a word. Zero where none is.
 std::array<double, 2> picasso_shift_nm(const smlm::LocalisationTable& table);
 
-/// Writes path (.hdf5) and its .yaml. x, y, lpx, lpy in pixels, z and lpz in nm, `group` the particle: its
-/// name where all names are whole numbers, else its index. Frame and photons come from columns of these names
-/// where the table has them; what Picasso wants beyond that (sx, sy, bg) is 1, 1, 0. Coordinates are written
-/// as they are: see picasso_shift_nm.
-void write_picasso(const std::string& path, const smlm::LocalisationTable& table);
+/// Writes path (.hdf5) and its .yaml, in which an appended document says what was done. x, y, lpx, lpy in
+/// pixels, z and lpz in nm, `group` the particle: its name where all names are whole numbers, else its index.
+/// Frame, photons and background come from the table where it has them; what Picasso wants beyond that
+/// (sx, sy) is 1. `shift_nm` is added to x and y and kept in the .yaml.
+void write_picasso(const std::string& path, const smlm::LocalisationTable& table,
+                   const std::array<double, 2>& shift_nm = {0, 0});
 
 }  // namespace polar
