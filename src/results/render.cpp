@@ -59,8 +59,15 @@ Gaussian gaussian(const smlm::LocalisationTable& table, std::size_t row) {
   return g;
 }
 
-// Covariances as calibrated; the axis of a particle's uncertainties turns with it, so each has its own.
-void calibrate(smlm::LocalisationTable& table, const RenderOptions& o) {
+// What drawing needs, covariances as calibrated; the axis of a particle's uncertainties turns with it, so
+// each has its own.
+smlm::LocalisationTable calibrated(const smlm::LocalisationTable& stated, const RenderOptions& o) {
+  smlm::LocalisationTable table;
+  table.position_nm = stated.position_nm;
+  table.covariance_nm2 = stated.covariance_nm2;
+  table.particle = stated.particle;
+  table.particle_names = stated.particle_names;
+  table.planar = stated.planar;
   NoiseModel noise{o.lateral_factor, o.axial_factor, o.lateral_extra_nm, o.axial_extra_nm, 0, table.planar};
   std::vector<std::vector<std::size_t>> rows(table.particle_names.size() + 1);
   for (std::size_t i = 0; i < table.size(); ++i)
@@ -73,6 +80,7 @@ void calibrate(smlm::LocalisationTable& table, const RenderOptions& o) {
     for (const std::size_t i : own)
       table.covariance_nm2[i] = effective_covariance(table.covariance_nm2[i], axis, noise);
   }
+  return table;
 }
 
 // Chooses box and voxel.
@@ -97,7 +105,6 @@ Volume frame(const smlm::LocalisationTable& table, const RenderOptions& o) {
     // The grid is centred on the box.
     v.origin_nm[axis] = (low[axis] + high[axis]) / 2 - v.voxel_nm * static_cast<double>(v.size[axis] - 1) / 2;
   }
-  v.density.assign(v.size[0] * v.size[1] * v.size[2], 0.0f);
   return v;
 }
 
@@ -146,6 +153,17 @@ void add(Volume& v, const Gaussian& g, std::size_t z_begin, std::size_t z_end) {
       add_row(v, g, dy, dz, &v.density[(z * v.size[1] + y) * v.size[0]]);
     }
 }
+
+Volume drawn(Volume v, const smlm::LocalisationTable& table) {
+  v.density.assign(v.size[0] * v.size[1] * v.size[2], 0.0f);
+  std::vector<Gaussian> gaussians(table.size());
+  parallel_for(table.size(), [&](std::size_t i) { gaussians[i] = gaussian(table, i); });
+  // Every block owns its slices and adds the localisations in their order.
+  parallel_blocks(v.size[2], kSlabDepth, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (const Gaussian& g : gaussians) add(v, g, begin, end);
+  });
+  return v;
+}
 }  // namespace
 
 RenderOptions calibrated_rendering(const Calibration& c, double scale_nm) {
@@ -156,22 +174,13 @@ RenderOptions calibrated_rendering(const Calibration& c, double scale_nm) {
 }
 
 Volume render(const smlm::LocalisationTable& stated, const RenderOptions& options) {
-  smlm::LocalisationTable table;  // what drawing needs, calibrated
-  table.position_nm = stated.position_nm;
-  table.covariance_nm2 = stated.covariance_nm2;
-  table.particle = stated.particle;
-  table.particle_names = stated.particle_names;
-  table.planar = stated.planar;
-  calibrate(table, options);
-  if (table.size() == 0) return {{1, 1, 1}, {0, 0, 0}, 1, table.planar, {0.0f}};
-  Volume v = frame(table, options);
-  std::vector<Gaussian> gaussians(table.size());
-  parallel_for(table.size(), [&](std::size_t i) { gaussians[i] = gaussian(table, i); });
-  // Every block owns its slices and adds the localisations in their order.
-  parallel_blocks(v.size[2], kSlabDepth, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (const Gaussian& g : gaussians) add(v, g, begin, end);
-  });
-  return v;
+  if (stated.size() == 0) return {{1, 1, 1}, {0, 0, 0}, 1, stated.planar, {0.0f}};
+  const smlm::LocalisationTable table = calibrated(stated, options);
+  return drawn(frame(table, options), table);
+}
+
+Volume render_into(Volume grid, const smlm::LocalisationTable& table, const RenderOptions& options) {
+  return drawn(std::move(grid), calibrated(table, options));
 }
 
 }  // namespace polar

@@ -41,4 +41,7 @@ RenderOptions calibrated_rendering(const Calibration& calibration, double scale_
 /// spread. The same bits for any number of threads. An empty table gives one empty voxel.
 Volume render(const smlm::LocalisationTable& table, const RenderOptions& options = {});
 
+/// Renders into a grid that is given (size, origin, voxel, planar; its density is replaced): two tables in one box.
+Volume render_into(Volume grid, const smlm::LocalisationTable& table, const RenderOptions& options = {});
+
 }  // namespace polar
