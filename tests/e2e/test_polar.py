@@ -201,34 +201,5 @@ class Determinism(PolarCase):
         self.assertNotEqual((self.folder / "results" / "poses.csv").read_bytes(), first["poses.csv"])
 
 
-class ParaView(PolarCase):
-    SCRIPT = """
-import json, sys
-from paraview.simple import OpenDataFile
-out = {}
-for name in ("aligned", "template"):
-    reader = OpenDataFile("results/" + name + ".hdf")
-    reader.UpdatePipeline()
-    info = reader.GetDataInformation()
-    arrays = info.GetPointDataInformation()
-    out[name] = [info.GetNumberOfPoints(),
-                 [arrays.GetArrayInformation(i).GetName() for i in range(arrays.GetNumberOfArrays())]]
-print(json.dumps(out))
-"""
-
-    def test_both_files_load(self):
-        self.simulate(SMALL)
-        self.ok("run", self.run_config())
-        script = self.write("load.py", self.SCRIPT)
-        done = subprocess.run([os.environ["PVPYTHON"], str(script)], cwd=self.folder, capture_output=True, text=True,
-                              timeout=240)
-        loaded = json.loads(done.stdout.splitlines()[-1])
-        rows = len((self.folder / "results" / "aligned.csv").read_text().splitlines()) - 1
-        self.assertEqual(loaded["aligned"][0], rows)
-        self.assertIn("sigma_z_nm", loaded["aligned"][1])
-        self.assertIn("intensity [photon]", loaded["aligned"][1])
-        self.assertEqual(loaded["template"][1], ["density"])
-
-
 if __name__ == "__main__":
     unittest.main()

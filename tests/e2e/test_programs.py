@@ -1,0 +1,242 @@
+"""What a run writes, opened by the programs it is written for. A program that is not installed skips its tests."""
+import csv
+import json
+import os
+import subprocess
+import unittest
+
+from harness import PolarCase
+
+SMALL = "simulation: {particles: 6, blinks_mean: 3, cramer_rao: false}"
+ALL = "output: {formats: [hdf5, vtkhdf, csv, tiff, ply, picasso, thunderstorm]}\n"
+
+
+def program(variable, what):
+    """Skips a test class where the program that `variable` names is not installed."""
+    return unittest.skipUnless(os.environ.get(variable), f"{what} is not installed")
+
+
+class ProgramCase(PolarCase):
+    def setUp(self):
+        super().setUp()
+        self.simulate(SMALL)
+        self.ok("run", self.run_config(more=ALL))
+        self.results = self.folder / "results"
+        with (self.results / "aligned.csv").open() as table:
+            self.aligned = list(csv.DictReader(table))
+
+    def column(self, name):
+        return [float(row[name]) for row in self.aligned]
+
+    def output_of(self, command):
+        done = subprocess.run(list(map(str, command)), cwd=self.folder, capture_output=True, text=True, timeout=240)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def python(self, variable, script):
+        """What the script prints last, as JSON."""
+        printed = self.output_of([os.environ[variable], self.write("script.py", script)])
+        return json.loads(printed.splitlines()[-1])
+
+    def assertAllClose(self, got, wanted, tolerance):
+        self.assertEqual(len(got), len(wanted))
+        for a, b in zip(got, wanted):
+            self.assertLessEqual(abs(a - b), tolerance)
+
+
+POINTS = """
+import json
+from paraview.simple import OpenDataFile
+from paraview.servermanager import Fetch
+reader = OpenDataFile("results/aligned.hdf")
+data = Fetch(reader)
+arrays = data.GetPointData()
+out = {"points": data.GetNumberOfPoints(), "cells": data.GetNumberOfCells(), "bounds": data.GetBounds(),
+       "range": {arrays.GetArrayName(i): arrays.GetArray(i).GetRange() for i in range(arrays.GetNumberOfArrays())},
+       "components": {arrays.GetArrayName(i): arrays.GetArray(i).GetNumberOfComponents()
+                      for i in range(arrays.GetNumberOfArrays())}}
+print(json.dumps(out))
+"""
+DENSITY = """
+import json
+from paraview.simple import OpenDataFile
+from paraview.servermanager import Fetch
+data = Fetch(OpenDataFile("results/template.hdf"))
+arrays = data.GetPointData()
+values = arrays.GetArray("density")
+n = values.GetNumberOfTuples()
+print(json.dumps({"size": data.GetDimensions(), "voxel": data.GetSpacing(), "origin": data.GetOrigin(),
+                  "arrays": [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())],
+                  "range": values.GetRange(), "mean": sum(values.GetValue(i) for i in range(n)) / n}))
+"""
+PLY = """
+import json
+from paraview.simple import OpenDataFile
+from paraview.servermanager import Fetch
+data = Fetch(OpenDataFile("results/aligned.ply"))
+print(json.dumps({"points": data.GetNumberOfPoints(), "bounds": data.GetBounds()}))
+"""
+
+
+@program("PVPYTHON", "ParaView (pvpython)")
+class ParaView(ProgramCase):
+    def bounds(self):
+        return [f(self.column(f"{axis} [nm]")) for axis in "xyz" for f in (min, max)]
+
+    def test_points_have_counts_bounds_and_every_column(self):
+        loaded = self.python("PVPYTHON", POINTS)
+        self.assertEqual((loaded["points"], loaded["cells"]), (len(self.aligned), len(self.aligned)))
+        self.assertAllClose(loaded["bounds"], self.bounds(), 1e-4)  # the decimals of the CSV
+        self.assertEqual(loaded["components"]["covariance_xx_xy_xz_yy_yz_zz_nm2"], 6)
+        variance = self.column("sigma_zz [nm^2]")
+        self.assertAllClose(loaded["range"]["sigma_z_nm"], [min(variance) ** 0.5, max(variance) ** 0.5], 1e-3)
+        for name in ("frame", "intensity [photon]"):
+            self.assertAllClose(loaded["range"][name], [min(self.column(name)), max(self.column(name))], 1e-9)
+        self.assertEqual(loaded["range"]["particle"], [0, 5])
+
+    def test_density_has_size_spacing_and_mass(self):
+        loaded = self.python("PVPYTHON", DENSITY)
+        self.assertEqual(loaded["arrays"], ["density"])
+        self.assertEqual(loaded["range"][0], 0)
+        voxel = loaded["voxel"][0]
+        self.assertEqual(loaded["voxel"], [voxel] * 3)
+        voxels = loaded["size"][0] * loaded["size"][1] * loaded["size"][2]
+        mass = loaded["mean"] * voxels * voxel ** 3
+        self.assertLess(mass, len(self.aligned))  # the box cuts off the tails of the outermost
+        self.assertGreater(mass, 0.9 * len(self.aligned))
+
+    def test_ply_has_the_points(self):
+        loaded = self.python("PVPYTHON", PLY)
+        self.assertEqual(loaded["points"], len(self.aligned))
+        self.assertAllClose(loaded["bounds"], self.bounds(), 1e-4)
+
+
+# open() would want menus, which need a display; the plugin behind File > Import > URL does not.
+MACRO = """
+call("ij.IJ.runPlugIn", "ij.plugin.URLOpener", "file://" + getArgument());
+getVoxelSize(width, height, depth, unit);
+getDimensions(columns, rows, channels, slices, frames);
+Stack.getStatistics(count, mean, least, most);
+getMinAndMax(darkest, brightest);
+x = 0; y = 0; z = 0;
+toScaled(x, y, z);
+print("template", columns, rows, slices, channels, frames, bitDepth(), unit, d2s(width, 9), d2s(height, 9),
+      d2s(depth, 9), d2s(x, 6), d2s(y, 6), d2s(z, 6), d2s(least, -9), d2s(most, -9), d2s(mean, -9),
+      d2s(darkest, -9), d2s(brightest, -9));
+"""
+
+
+# By h5py: size and first voxel's centre (x, y, z), voxel (nm), values. The assertions are Fiji's HDF5 import's.
+TEMPLATE = """
+import h5py, json
+with h5py.File("results/template.hdf") as file:
+    root = file["VTKHDF"]
+    density = root["PointData/density"]
+    extent = root.attrs["WholeExtent"]
+    assert density.shape == (extent[5] + 1, extent[3] + 1, extent[1] + 1) and density.dtype == "float32"
+    assert density.attrs["element_size_um"].dtype == "float32"
+    assert abs(density.attrs["element_size_um"] * 1000 - root.attrs["Spacing"]).max() < 1e-6
+    print(json.dumps([list(map(int, density.shape[::-1])), list(root.attrs["Origin"]), root.attrs["Spacing"][0],
+                      [float(v) for v in density[:].ravel()]]))
+"""
+RECORD = """
+import h5py, json
+with h5py.File("results/results.h5") as file:
+    def describe(name, item):
+        if isinstance(item, h5py.Dataset) and name.split("/")[0] in ("poses", "template", "superparticle"):
+            texts = item.dtype.kind == "O"
+            assert texts or ("unit" in item.attrs and "meaning" in item.attrs), name
+    file.visititems(describe)
+    print(json.dumps({"version": int(file.attrs["format_version"]), "poses": file["poses/rotation"].shape,
+                      "position": file["superparticle/position"][:].tolist(),
+                      "configuration": file["run/configuration"][0].decode()}))
+"""
+
+
+@program("PICASSO_PYTHON", "h5py (build-tools/picasso)")
+class H5py(ProgramCase):
+    def test_record_describes_itself(self):
+        record = self.python("PICASSO_PYTHON", RECORD)
+        self.assertEqual(record["version"], 1)
+        self.assertEqual(record["poses"], [6, 3, 3])
+        self.assertIn("registration:", record["configuration"])
+        for axis, name in enumerate(("x [nm]", "y [nm]", "z [nm]")):
+            self.assertAllClose([x[axis] for x in record["position"]], self.column(name), 0.5001e-4)
+
+    def test_density_has_the_layout_of_both_programs(self):
+        size, _, voxel, values = self.python("PICASSO_PYTHON", TEMPLATE)
+        self.assertEqual(len(values), size[0] * size[1] * size[2])
+        self.assertGreater(sum(values) * voxel ** 3, 0.9 * len(self.aligned))
+
+
+@program("IMAGEJ_JAR", "ImageJ (libij-java and a Java runtime)")
+@program("PICASSO_PYTHON", "h5py (build-tools/picasso)")
+class ImageJ(ProgramCase):
+    def open(self):
+        macro = self.write("open.ijm", MACRO)
+        printed = self.output_of([os.environ["JAVA"], "-Djava.awt.headless=true", "-cp", os.environ["IMAGEJ_JAR"],
+                                  "ij.ImageJ", "-batch", macro, self.results / "template.tif"])
+        lines = [line.split() for line in printed.splitlines() if line.startswith("template ")]
+        self.assertEqual(len(lines), 1, printed)
+        return lines[0][1:]
+
+    def test_stack_is_the_density_calibrated_in_nm(self):
+        columns, rows, slices, channels, frames, bits, unit, *numbers = self.open()
+        width, height, depth, x, y, z, least, most, mean, darkest, brightest = map(float, numbers)
+        size, first, voxel, values = self.python("PICASSO_PYTHON", TEMPLATE)
+        self.assertEqual([int(columns), int(rows), int(slices)], size)
+        self.assertEqual((channels, frames, bits, unit), ("1", "1", "32", "nm"))
+        self.assertAllClose([width, height, depth], [voxel] * 3, 1e-6)
+        self.assertAllClose([x, y, z], first, 1e-4)
+        self.assertAllClose([least, most], [min(values), max(values)], 1e-8)
+        self.assertAllClose([darkest, brightest], [least, most], 1e-8)
+        self.assertAlmostEqual(mean, sum(values) / len(values), delta=1e-8)
+
+
+# load_locs drops, without a word, rows that lie outside the image or hold a negative or no number.
+PICASSO = """
+import json
+from picasso import io, lib
+locs, info = io.load_locs("results/aligned.hdf5")
+pixel = lib.get_from_metadata(info, "Pixelsize")
+shift = [lib.get_from_metadata(info, f"Shift {axis} (nm)") for axis in "xy"]
+print(json.dumps({"n": len(locs), "documents": len(info), "pixel": pixel, "shift": shift,
+                  "x": (locs["x"] * pixel).tolist(), "z": locs["z"].tolist(), "lpz": locs["lpz"].tolist(),
+                  "group": sorted(set(map(int, locs["group"]))), "photons": locs["photons"].tolist()}))
+"""
+PICASSO_THUNDERSTORM = """
+import json
+from picasso import io
+locs, info = io.import_ts("results/aligned_thunderstorm.csv", 100.0)
+locs = locs.sort_values(["frame", "photons"])
+print(json.dumps({"n": len(locs), "x": (locs["x"] * 100.0).tolist(), "z": locs["z"].tolist(),
+                  "lpx": (locs["lpx"] * 100.0).tolist(), "photons": locs["photons"].tolist()}))
+"""
+
+
+@program("PICASSO_PYTHON", "Picasso (build-tools/picasso)")
+class Picasso(ProgramCase):
+    def test_loader_keeps_every_localisation(self):
+        loaded = self.python("PICASSO_PYTHON", PICASSO)
+        self.assertEqual(loaded["n"], len(self.aligned))
+        self.assertEqual(loaded["documents"], 2)
+        self.assertEqual(loaded["pixel"], 130)
+        self.assertAllClose([x - loaded["shift"][0] for x in loaded["x"]], self.column("x [nm]"), 2e-4)
+        self.assertAllClose(loaded["z"], self.column("z [nm]"), 1e-4)
+        self.assertAllClose(loaded["lpz"], [v ** 0.5 for v in self.column("sigma_zz [nm^2]")], 1e-3)
+        self.assertEqual(loaded["group"], sorted({int(row["particle"]) for row in self.aligned}))
+        self.assertEqual(loaded["photons"], self.column("intensity [photon]"))
+
+    def test_its_thunderstorm_import_reads_ours(self):
+        self.aligned.sort(key=lambda row: (int(row["frame"]), float(row["intensity [photon]"])))
+        loaded = self.python("PICASSO_PYTHON", PICASSO_THUNDERSTORM)
+        self.assertEqual(loaded["n"], len(self.aligned))
+        self.assertAllClose(loaded["x"], self.column("x [nm]"), 2e-4)
+        self.assertAllClose(loaded["z"], self.column("z [nm]"), 1e-4)
+        lateral = [((a + b) / 2) ** 0.5 for a, b in zip(self.column("sigma_xx [nm^2]"), self.column("sigma_yy [nm^2]"))]
+        self.assertAllClose(loaded["lpx"], lateral, 1e-3)
+        self.assertEqual(loaded["photons"], self.column("intensity [photon]"))
+
+
+if __name__ == "__main__":
+    unittest.main()
