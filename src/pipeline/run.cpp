@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "halves.hpp"
 #include "input_hash.hpp"
 #include "output_directory.hpp"
 #include "polar/pipeline/outputs.hpp"
@@ -36,7 +38,9 @@ class Stopwatch {
 
 // The configuration without where its files lie: the same computation in another place is the same.
 std::string computation_text(RunConfig config) {
-  config.output = {};
+  OutputOptions computed;  // of the output, only this is a computation
+  computed.resolution = config.output.resolution;
+  config.output = computed;
   const auto name_only = [](std::string& file) { file = std::filesystem::path(file).filename().string(); };
   std::for_each(config.files.begin(), config.files.end(), name_only);
   name_only(config.read.pick.centres);
@@ -105,6 +109,27 @@ std::string format(const char* pattern, double value) {
   return text;
 }
 
+// NaN has no place in JSON.
+nlohmann::json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+nlohmann::json half_maps_json(const HalfMaps& h) {
+  return {{"resolution_nm", number_or_null(h.resolution.period_nm)}, {"at_nyquist", h.resolution.at_nyquist},
+          {"particles", {h.first_particles, h.second_particles}},    {"voxel_nm", h.voxel_nm},
+          {"frequency_per_nm", h.shells.frequency_per_nm},           {"correlation", h.shells.correlation}};
+}
+
+std::string period(const HalfMaps& h) {
+  if (!std::isfinite(h.resolution.period_nm)) return "nothing";
+  return format("%.2f nm", h.resolution.period_nm) + (h.resolution.at_nyquist ? " (two voxels)" : "");
+}
+
+std::string resolution_line(const ResolutionReport& r) {
+  return "resolution   " + period(r.data) + " between independent halves, " + period(r.noise) +
+         " in pure noise" + (r.supported() ? "" : ": no structure is resolved");
+}
+
 std::vector<std::string> describe(const Results& r, const std::string& directory, double seconds) {
   const Registration& g = r.registration;
   const std::size_t n = r.particles.particles.size();
@@ -127,6 +152,7 @@ std::vector<std::string> describe(const Results& r, const std::string& directory
   lines.push_back("start        " + winner(g) + " won of " + std::to_string(g.starts.size()));
   lines.push_back("rounds       " + std::to_string(g.rounds) +
                   (g.converged ? ", converged: " : ", not converged: ") + g.stopped_because);
+  if (r.resolution) lines.push_back(resolution_line(*r.resolution));
   lines.push_back("seconds      " + format("%.1f", seconds));
   lines.push_back("results      " + directory);
   return lines;
@@ -142,22 +168,27 @@ nlohmann::json summary_json(const Results& r, const std::vector<std::string>& li
                       {"held_out_log_likelihood", s.held_out_log_likelihood},
                       {"final_held_out_log_likelihood", s.final_held_out_log_likelihood},
                       {"won", s.won}});
-  return {{"program", r.provenance.program},
-          {"input_hash", r.provenance.input_hash},
-          {"seed", r.provenance.seed},
-          {"particles", r.particles.particles.size()},
-          {"accepted", accepted(r)},
-          {"localisations", r.particles.table.size()},
-          {"planar", r.planar},
-          {"rounds", g.rounds},
-          {"converged", g.converged},
-          {"stopped_because", g.stopped_because},
-          {"starts", starts},
-          {"timings", timings},
-          {"warnings", g.warnings},
-          {"seconds", seconds},
-          {"files", files},
-          {"text", lines}};
+  nlohmann::json summary = {{"program", r.provenance.program},
+                            {"input_hash", r.provenance.input_hash},
+                            {"seed", r.provenance.seed},
+                            {"particles", r.particles.particles.size()},
+                            {"accepted", accepted(r)},
+                            {"localisations", r.particles.table.size()},
+                            {"planar", r.planar},
+                            {"rounds", g.rounds},
+                            {"converged", g.converged},
+                            {"stopped_because", g.stopped_because},
+                            {"starts", starts},
+                            {"timings", timings},
+                            {"warnings", g.warnings},
+                            {"seconds", seconds},
+                            {"files", files},
+                            {"text", lines}};
+  if (r.resolution)
+    summary["resolution"] = {{"halves", half_maps_json(r.resolution->data)},
+                             {"noise", half_maps_json(r.resolution->noise)},
+                             {"supported", r.resolution->supported()}};
+  return summary;
 }
 
 Results compute(const RunConfig& config, const std::string& hash, Progress& progress, const Engine& engine) {
@@ -169,6 +200,8 @@ Results compute(const RunConfig& config, const std::string& hash, Progress& prog
   r.planar = views.planar;
   r.provenance = {program_version(), run_config_text(config), config.registration.seed, hash,
                   library_versions()};
+  if (config.output.resolution == "halves" && accepted(r) > 0 && !progress.cancelled())
+    r.resolution = pipeline::resolve_halves(r.particles, config.registration, progress, engine);
   return r;
 }
 

@@ -50,6 +50,7 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("formats", c.output.formats);
     s.field("voxel_nm", c.output.voxel_nm);
     s.field("preview", c.output.preview);
+    s.field("resolution", c.output.resolution);
   });
 }
 
@@ -80,6 +81,8 @@ void check(const RunConfig& c, const std::string& path) {
   require_word(faults, "registration.method", c.method, "likelihood");
   require_word(faults, "registration.optimizer", c.optimizer, "levenberg_marquardt");
   check_formats(c.output.formats, faults);
+  if (c.output.resolution != "none" && c.output.resolution != "halves")
+    faults.push_back("output.resolution is '" + c.output.resolution + "', expected none or halves");
   if (!(c.output.voxel_nm >= 0)) faults.emplace_back("output.voxel_nm must be 0 or more");
   if (c.output.directory.empty()) faults.emplace_back("output.directory is empty");
   smlm::throw_if_any(faults, smlm::Fault::usage, path);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <complex>
-#include <limits>
 // The module's own casts are not ours to warn about.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -96,7 +95,7 @@ FourierShells fourier_shells(const Volume& a, const Volume& b) {
     const double power = std::sqrt(sums.first[s] * sums.second[s]);
     out.frequency_per_nm.push_back(static_cast<double>(s + 1) / (static_cast<double>(n) * a.voxel_nm));
     out.correlation.push_back(power > 0 ? sums.cross[s] / power : 0.0);
-    out.amplitude.push_back(sums.count[s]);
+    out.coefficients.push_back(sums.count[s]);
   }
   return out;
 }
@@ -106,7 +105,7 @@ ShellResolution shell_resolution(const FourierShells& shells, double threshold) 
   const std::vector<double>& f = shells.frequency_per_nm;
   std::size_t s = 0;
   while (s < c.size() && c[s] >= threshold) ++s;
-  if (s < kShellsNeeded) return {std::numeric_limits<double>::quiet_NaN()};
+  if (s < kShellsNeeded) return {};
   if (s == c.size()) return {1 / f.back(), true};
   const double share = (c[s - 1] - threshold) / (c[s - 1] - c[s]);
   return {1 / (f[s - 1] + share * (f[s] - f[s - 1]))};

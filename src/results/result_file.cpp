@@ -177,6 +177,25 @@ void write_run(File& file, const Results& r) {
   file.write_attribute("/run/calibration", "axial_extra_nm", scale_nm * g.calibration.axial_extra);
 }
 
+void write_half_maps(File& file, const std::string& group, const HalfMaps& h) {
+  file.make_group(group);
+  file.write_attribute(group, "resolution_nm", h.resolution.period_nm);  // NaN: nothing is resolved
+  file.write_attribute(group, "at_nyquist", static_cast<std::uint8_t>(h.resolution.at_nyquist ? 1 : 0));
+  file.write_attribute(group, "voxel_nm", h.voxel_nm);
+  file.write_attribute(group, "particles", std::vector<std::uint64_t>{h.first_particles, h.second_particles});
+  file.write(group + "/frequency_per_nm", h.shells.frequency_per_nm);
+  file.write(group + "/correlation", h.shells.correlation);
+  file.write(group + "/coefficients", h.shells.coefficients);
+}
+
+void write_resolution(File& file, const ResolutionReport& r) {
+  file.make_group("/resolution");
+  file.write_attribute("/resolution", "threshold", kResolutionThreshold);
+  file.write_attribute("/resolution", "supported", static_cast<std::uint8_t>(r.supported() ? 1 : 0));
+  write_half_maps(file, "/resolution/halves", r.data);
+  write_half_maps(file, "/resolution/noise", r.noise);
+}
+
 std::string one_string(const File& file, const char* name) {
   const std::vector<std::string> values = file.read_strings(name);
   return values.empty() ? std::string() : values.front();
@@ -193,6 +212,7 @@ void write_result_file(const std::string& path, const Results& results,
   write_template(file, results);
   write_superparticle(file, results, superparticle);
   write_run(file, results);
+  if (results.resolution) write_resolution(file, *results.resolution);
   file.close();
   atomic.commit();
 }
@@ -235,7 +255,9 @@ ResultRecord read_result_file(const std::string& path) {
       throw smlm::Error(smlm::Fault::input, path + ":/superparticle", "columns of different lengths",
                         "run again");
   }
-  const auto calibration = [&](const char* name) { return file.read_attribute<double>("/run/calibration", name).at(0); };
+  const auto calibration = [&](const char* name) {
+    return file.read_attribute<double>("/run/calibration", name).at(0);
+  };
   record.render.lateral_factor = calibration("lateral_factor");
   record.render.axial_factor = calibration("axial_factor");
   record.render.lateral_extra_nm = calibration("lateral_extra_nm");

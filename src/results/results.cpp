@@ -6,8 +6,6 @@
 
 namespace polar {
 
-namespace {
-
 smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c) {
   Eigen::Matrix3d m;
   m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
@@ -15,7 +13,6 @@ smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c) {
   const Eigen::Matrix3f s = (r * m * r.transpose()).cast<float>();
   return {s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2)};
 }
-}  // namespace
 
 Pose template_from_table(const Results& results, std::size_t i) {
   const Pose& engine = results.registration.view[i].template_from_view;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "polar/results/render.hpp"
@@ -17,8 +18,8 @@ constexpr double kResolutionThreshold = 0.143;
 /// Nyquist frequency 1 / (2 voxels).
 struct FourierShells {
   std::vector<double> frequency_per_nm;
-  std::vector<double> correlation;       // Re sum F1 F2* / sqrt(sum |F1|^2 sum |F2|^2); 0 where nothing is
-  std::vector<std::uint64_t> amplitude;  // number of Fourier coefficients in the shell
+  std::vector<double> correlation;          // Re sum F1 F2* / sqrt(sum |F1|^2 sum |F2|^2); 0 where nothing is
+  std::vector<std::uint64_t> coefficients;  // how many are in the shell
 };
 
 /// The volumes must share size, origin and voxel, and have equal edges (planar: one slice). What is drawn
@@ -30,7 +31,7 @@ FourierShells fourier_shells(const Volume& first, const Volume& second);
 struct ShellResolution {
   /// Period (nm) at which the correlation first falls below the threshold, interpolated linearly in frequency
   /// between shells; NaN where one of the first three shells is already below: nothing is resolved.
-  double period_nm;
+  double period_nm = std::numeric_limits<double>::quiet_NaN();
   bool at_nyquist = false;  // never below: the voxels end first, and period_nm is two of them
 };
 ShellResolution shell_resolution(const FourierShells& shells, double threshold = kResolutionThreshold);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "polar/core/view.hpp"
 #include "polar/registration/registration.hpp"
 #include "polar/results/pose_table.hpp"
+#include "polar/results/resolution.hpp"
 #include "smlm/particle_set.hpp"
 
 namespace polar {
@@ -31,7 +33,11 @@ struct Results {
   bool planar = false;
   Registration registration;
   Provenance provenance;
+  std::optional<ResolutionReport> resolution;  // where output.resolution asks for it
 };
+
+/// R C R^T of a stored covariance.
+smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c);
 
 /// The engine's pose of particle i in nm: x_template = R x_nm + t_nm with x_nm as in the table and the
 /// template frame = scale_nm * engine frame.

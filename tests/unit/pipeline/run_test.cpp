@@ -8,11 +8,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "polar/pipeline/simulate_run.hpp"
 #include "polar/results/compare.hpp"
 #include "polar/results/pose_table.hpp"
 #include "smlm/error.hpp"
+#include "smlm/h5/file.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace polar {
@@ -112,6 +114,22 @@ TEST_F(Run, ResumeComputesWhatIsIncomplete) {
   std::filesystem::remove(out("summary.json"));
   EXPECT_EQ(fault({false, true}), 0);
   EXPECT_TRUE(std::filesystem::exists(out("summary.json")));
+}
+
+TEST_F(Run, ResolutionOfHalvesIsRecordedAndPartOfTheComputation) {
+  ASSERT_EQ(fault({}), 0);
+  EXPECT_THAT(content(out("summary.json")), ::testing::Not(HasSubstr("\"resolution\"")));
+  write_config("input: {files: data/localisations.csv}\noutput: {resolution: halves}\n");
+  EXPECT_EQ(fault({false, true}), 3);  // a result without halves is not this one
+  ASSERT_EQ(fault({true, false}), 0);
+  const auto summary = nlohmann::json::parse(content(out("summary.json")));
+  EXPECT_EQ(summary["resolution"]["halves"]["particles"], (std::vector<int>{2, 2}));
+  const smlm::h5::File file = smlm::h5::File::open(out("results.h5"));
+  EXPECT_EQ(file.read<double>("/resolution/halves/correlation").size(),
+            file.read<double>("/resolution/halves/frequency_per_nm").size());
+  EXPECT_TRUE(file.exists("/resolution/noise"));
+  write_config("input: {files: data/localisations.csv}\noutput: {resolution: thirds}\n");
+  EXPECT_THROW(config(), smlm::Error);
 }
 
 TEST_F(Run, OverwriteLeavesNothingOfTheEarlierRun) {

@@ -1,0 +1,63 @@
+#include "halves.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "polar/core/rng.hpp"
+#include "polar/registration/prepare.hpp"
+#include "polar/results/half_maps.hpp"
+
+namespace polar::pipeline {
+
+namespace {
+constexpr std::uint32_t kSplitStage = 0x91;
+constexpr std::size_t kFewestParticles = 4;
+
+// Which half every particle belongs to.
+std::vector<bool> split(std::size_t n, std::uint64_t seed) {
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  KeyedRandom random(seed, 0, kSplitStage);
+  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+  std::vector<bool> second(n);
+  for (std::size_t i = 0; i < n; ++i) second[order[i]] = i % 2 == 1;
+  return second;
+}
+
+Results registered(const smlm::ParticleSet& all, const std::vector<bool>& second, bool want_second,
+                   RegistrationOptions options, Progress& progress, const Engine& engine) {
+  Results r;
+  r.particles.table = all.table;
+  for (std::size_t i = 0; i < all.particles.size(); ++i)
+    if (second[i] == want_second) r.particles.particles.push_back(all.particles[i]);
+  // The halves share no random number either.
+  options.seed = KeyedRandom(options.seed, want_second ? 2 : 1, kSplitStage).bits();
+  Views views = prepare_views(r.particles);
+  r.registration = engine(views, options, progress);
+  r.normalisation = std::move(views.normalisation);
+  r.planar = views.planar;
+  return r;
+}
+
+HalfMaps half_maps(const smlm::ParticleSet& particles, const std::vector<bool>& second,
+                   const RegistrationOptions& options, Progress& progress, const Engine& engine) {
+  const Results a = registered(particles, second, false, options, progress, engine);
+  if (progress.cancelled()) return {};
+  const Results b = registered(particles, second, true, options, progress, engine);
+  if (progress.cancelled()) return {};
+  return compare_half_maps(a, b, options.seed);
+}
+}  // namespace
+
+ResolutionReport resolve_halves(const smlm::ParticleSet& particles, const RegistrationOptions& options,
+                                Progress& progress, const Engine& engine) {
+  ResolutionReport report;
+  if (particles.particles.size() < kFewestParticles) return report;
+  const std::vector<bool> second = split(particles.particles.size(), options.seed);
+  report.data = half_maps(particles, second, options, progress, engine);
+  if (progress.cancelled()) return report;
+  report.noise = half_maps(noise_particles(particles, options.seed), second, options, progress, engine);
+  return report;
+}
+
+}  // namespace polar::pipeline

@@ -1,0 +1,160 @@
+#include "polar/results/half_maps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "polar/core/rng.hpp"
+
+namespace polar {
+
+namespace {
+constexpr std::uint32_t kNoiseStage = 0x83;
+constexpr double kHeld = 0.99;      // share of the localisations that decides the cube's size
+constexpr double kMargin = 1.15;    // of the cube's half edge over their radius
+constexpr double kReach = 4;        // standard deviations that the renderer draws
+constexpr double kSoftening = 0.6;  // voxels added to what is drawn: nothing falls between two voxels
+constexpr std::size_t kMostVoxels = 192, kMostPlanarVoxels = 1024, kFewestVoxels = 32;
+
+using Table = smlm::LocalisationTable;
+
+double quantile(std::vector<double> values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+double sigma_nm(const smlm::Covariance& c, bool planar, bool largest) {
+  const float variance = planar ? (largest ? std::max(c[0], c[3]) : std::min(c[0], c[3]))
+                                : (largest ? std::max({c[0], c[3], c[5]}) : std::min({c[0], c[3], c[5]}));
+  return std::sqrt(static_cast<double>(variance));
+}
+
+// The number of voxels along an edge, a product of 2, 3 and 5: what the transform is fast for.
+std::size_t smooth_number(std::size_t least) {
+  for (std::size_t n = least + least % 2;; n += 2) {
+    std::size_t rest = n;
+    for (const std::size_t factor : {2u, 3u, 5u})
+      while (rest % factor == 0) rest /= factor;
+    if (rest == 1) return n;
+  }
+}
+
+// A table moved by a pose, covariances turned along.
+Table moved(Table t, const Pose& pose) {
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const auto& x = t.position_nm[i];
+    const Eigen::Vector3d y = pose * Eigen::Vector3d(x[0], x[1], t.planar ? 0.0 : x[2]);
+    t.position_nm[i] = {y.x(), y.y(), t.planar ? x[2] : y.z()};
+    t.covariance_nm2[i] = rotated(pose.rotation, t.covariance_nm2[i]);
+  }
+  return t;
+}
+
+// The cube that both tables are drawn in.
+Volume cube(const Table& a, const Table& b) {
+  const bool planar = a.planar;
+  Eigen::Vector3d centre;
+  std::vector<double> radius, sigma;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> along;
+    for (const Table* t : {&a, &b})
+      for (const auto& x : t->position_nm) along.push_back(x[static_cast<std::size_t>(axis)]);
+    centre[axis] = planar && axis == 2 ? 0.0 : quantile(std::move(along), 0.5);
+  }
+  for (const Table* t : {&a, &b})
+    for (std::size_t i = 0; i < t->size(); ++i) {
+      const auto& x = t->position_nm[i];
+      radius.push_back((Eigen::Vector3d(x[0], x[1], planar ? 0.0 : x[2]) - centre).norm());
+      sigma.push_back(sigma_nm(t->covariance_nm2[i], planar, false));
+    }
+  const double fine_nm = quantile(std::move(sigma), 0.5);
+  const double edge_nm = 2 * (kMargin * quantile(std::move(radius), kHeld) + kReach * fine_nm);
+  const double wished = 2 * edge_nm / std::max(fine_nm, 1e-3 * edge_nm);
+  const std::size_t n = smooth_number(std::clamp(static_cast<std::size_t>(std::ceil(wished)), kFewestVoxels,
+                                                 planar ? kMostPlanarVoxels : kMostVoxels));
+  Volume v;
+  v.planar = planar;
+  v.size = {n, n, planar ? 1 : n};
+  v.voxel_nm = edge_nm / static_cast<double>(n);
+  for (std::size_t axis = 0; axis < (planar ? 2u : 3u); ++axis)
+    v.origin_nm[axis] = centre[static_cast<Eigen::Index>(axis)] - v.voxel_nm * static_cast<double>(n - 1) / 2;
+  return v;
+}
+
+// Draws what does not reach the cube's faces.
+Volume drawn_inside(const Table& table, Volume grid, RenderOptions options) {
+  options.lateral_extra_nm = std::hypot(options.lateral_extra_nm, kSoftening * grid.voxel_nm);
+  options.axial_extra_nm = std::hypot(options.axial_extra_nm, kSoftening * grid.voxel_nm);
+  Table inside;
+  inside.planar = table.planar;
+  inside.particle_names = table.particle_names;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double factor = std::max(options.lateral_factor, options.axial_factor);
+    const double extra = std::max(options.lateral_extra_nm, options.axial_extra_nm);
+    const double reach_nm =
+        kReach * std::hypot(factor * sigma_nm(table.covariance_nm2[i], table.planar, true), extra);
+    bool fits = true;
+    for (std::size_t axis = 0; axis < (table.planar ? 2u : 3u); ++axis) {
+      const double low = grid.origin_nm[axis],
+                   high = low + grid.voxel_nm * static_cast<double>(grid.size[axis] - 1);
+      fits = fits && table.position_nm[i][axis] - reach_nm >= low &&
+             table.position_nm[i][axis] + reach_nm <= high;
+    }
+    if (!fits) continue;
+    inside.position_nm.push_back(table.position_nm[i]);
+    inside.covariance_nm2.push_back(table.covariance_nm2[i]);
+    inside.particle.push_back(table.particle[i]);
+  }
+  return render_into(std::move(grid), inside, options);
+}
+
+std::size_t accepted(const Results& r) {
+  return static_cast<std::size_t>(std::count_if(r.registration.view.begin(), r.registration.view.end(),
+                                                [](const RegisteredView& v) { return v.accepted; }));
+}
+}  // namespace
+
+bool ResolutionReport::supported() const {
+  const double found = data.resolution.period_nm, control = noise.resolution.period_nm;
+  return std::isfinite(found) && !(control <= found);
+}
+
+HalfMaps compare_half_maps(const Results& first, const Results& second, std::uint64_t seed) {
+  HalfMaps out;
+  out.first_particles = accepted(first), out.second_particles = accepted(second);
+  if (out.first_particles == 0 || out.second_particles == 0) return out;
+  out.first_from_second_nm = align_maps(first, second, seed);
+  const Table a = superparticle(first), b = moved(superparticle(second), out.first_from_second_nm);
+  const Volume grid = cube(a, b);
+  const auto draw = [&](const Table& t, const Results& r) {
+    return drawn_inside(t, grid, calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm));
+  };
+  out.voxel_nm = grid.voxel_nm;
+  out.shells = fourier_shells(draw(a, first), draw(b, second));
+  out.resolution = shell_resolution(out.shells);
+  return out;
+}
+
+smlm::ParticleSet noise_particles(smlm::ParticleSet set, std::uint64_t seed) {
+  const std::size_t axes = set.table.planar ? 2 : 3;
+  for (std::size_t p = 0; p < set.particles.size(); ++p) {
+    const std::vector<std::uint32_t>& rows = set.particles[p].rows;
+    if (rows.empty()) continue;
+    std::array<double, 3> mean{};
+    for (const std::uint32_t row : rows)
+      for (std::size_t a = 0; a < axes; ++a)
+        mean[a] += set.table.position_nm[row][a] / static_cast<double>(rows.size());
+    double square = 0;
+    for (const std::uint32_t row : rows)
+      for (std::size_t a = 0; a < axes; ++a) square += std::pow(set.table.position_nm[row][a] - mean[a], 2);
+    const double width_nm = std::sqrt(square / static_cast<double>(axes * rows.size()));
+    KeyedRandom random(seed, p, kNoiseStage);
+    for (const std::uint32_t row : rows)
+      for (std::size_t a = 0; a < axes; ++a)
+        set.table.position_nm[row][a] = mean[a] + width_nm * random.normal();
+  }
+  return set;
+}
+
+}  // namespace polar
