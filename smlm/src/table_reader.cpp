@@ -58,11 +58,13 @@ void refuse_known(const FileHead& head) {
 }  // namespace
 
 const std::vector<TableReader>& table_readers() {
-  static const std::vector<TableReader> all{readers::picasso, readers::picasso_pandas, readers::smap,
-                                            readers::decode,  readers::particle_cells, readers::smlm_zip,
-                                            readers::minflux, readers::minflux_mat,    readers::rapidstorm,
-                                            readers::elyra,   readers::nstorm,         readers::oni,
-                                            readers::zola,    readers::thunderstorm,   readers::csv};
+  static const std::vector<TableReader> all{
+      readers::picasso,    readers::picasso_pandas, readers::smap,
+      readers::decode,     readers::particle_cells, readers::smlm_zip,
+      readers::minflux,    readers::minflux_json,   readers::minflux_mat,
+      readers::rapidstorm, readers::elyra,          readers::nstorm,
+      readers::oni,        readers::zola,           readers::thunderstorm,
+      readers::csv};
   return all;
 }
 

@@ -23,14 +23,8 @@ std::vector<SourceColumn> columns(const TextHeader& header, ReadOptions&) {
   return columns;
 }
 
-LocalisationTable read(const std::string& path, const ReadOptions& options) {
-  TextFormat format;
-  format.columns = columns;
-  return read_text_table(path, options, format);
-}
-
 }  // namespace
 
-const TableReader nstorm{"nstorm", "Nikon N-STORM (.txt)", recognises, read};
+const TableReader nstorm{"nstorm", "Nikon N-STORM (.txt)", recognises, read_with_columns<columns>};
 
 }  // namespace smlm::readers

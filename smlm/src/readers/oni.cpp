@@ -12,29 +12,19 @@ bool recognises(const FileHead& head) {
 }
 
 std::vector<SourceColumn> columns(const TextHeader& header, ReadOptions&) {
-  auto columns = columns_by_role(header.cells, {{"x", Quantity::x},
-                                                {"y", Quantity::y},
-                                                {"z", Quantity::z},
-                                                {"x_precision", Quantity::sigma_x},
-                                                {"y_precision", Quantity::sigma_y},
-                                                {"z_precision", Quantity::sigma_z},
-                                                {"frame", Quantity::frame},
-                                                {"photons", Quantity::photons},
-                                                {"background", Quantity::background}});
-  for (SourceColumn& column : columns) {
-    if (units::parse_length(column.unit) == units::Length::pixel) column.quantity = Quantity::other;
-  }
-  return columns;
-}
-
-LocalisationTable read(const std::string& path, const ReadOptions& options) {
-  TextFormat format;
-  format.columns = columns;
-  return read_text_table(path, options, format);
+  return nm_columns_by_role(header.cells, {{"x", Quantity::x},
+                                           {"y", Quantity::y},
+                                           {"z", Quantity::z},
+                                           {"x_precision", Quantity::sigma_x},
+                                           {"y_precision", Quantity::sigma_y},
+                                           {"z_precision", Quantity::sigma_z},
+                                           {"frame", Quantity::frame},
+                                           {"photons", Quantity::photons},
+                                           {"background", Quantity::background}});
 }
 
 }  // namespace
 
-const TableReader oni{"oni", "ONI Nanoimager (.csv)", recognises, read};
+const TableReader oni{"oni", "ONI Nanoimager (.csv)", recognises, read_with_columns<columns>};
 
 }  // namespace smlm::readers

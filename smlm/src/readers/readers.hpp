@@ -12,6 +12,7 @@ extern const TableReader decode;
 extern const TableReader particle_cells;
 extern const TableReader smlm_zip;
 extern const TableReader minflux;
+extern const TableReader minflux_json;
 extern const TableReader minflux_mat;
 extern const TableReader rapidstorm;
 extern const TableReader elyra;

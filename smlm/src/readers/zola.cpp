@@ -10,29 +10,19 @@ bool recognises(const FileHead& head) {
 }
 
 std::vector<SourceColumn> columns(const TextHeader& header, ReadOptions&) {
-  auto columns = columns_by_role(header.cells, {{"x", Quantity::x},
-                                                {"y", Quantity::y},
-                                                {"z", Quantity::z},
-                                                {"crlb_xnm", Quantity::sigma_x, "nm"},
-                                                {"crlb_ynm", Quantity::sigma_y, "nm"},
-                                                {"crlb_z", Quantity::sigma_z, "nm"},
-                                                {"frame", Quantity::frame},
-                                                {"intensity", Quantity::photons},
-                                                {"background", Quantity::background}});
-  for (SourceColumn& column : columns) {
-    if (units::parse_length(column.unit) == units::Length::pixel) column.quantity = Quantity::other;
-  }
-  return columns;
-}
-
-LocalisationTable read(const std::string& path, const ReadOptions& options) {
-  TextFormat format;
-  format.columns = columns;
-  return read_text_table(path, options, format);
+  return nm_columns_by_role(header.cells, {{"x", Quantity::x},
+                                           {"y", Quantity::y},
+                                           {"z", Quantity::z},
+                                           {"crlb_xnm", Quantity::sigma_x, "nm"},
+                                           {"crlb_ynm", Quantity::sigma_y, "nm"},
+                                           {"crlb_z", Quantity::sigma_z, "nm"},
+                                           {"frame", Quantity::frame},
+                                           {"intensity", Quantity::photons},
+                                           {"background", Quantity::background}});
 }
 
 }  // namespace
 
-const TableReader zola{"zola", "ZOLA-3D (.csv)", recognises, read};
+const TableReader zola{"zola", "ZOLA-3D (.csv)", recognises, read_with_columns<columns>};
 
 }  // namespace smlm::readers

@@ -174,6 +174,15 @@ std::vector<SourceColumn> columns_by_role(const std::vector<std::string>& cells,
   return columns;
 }
 
+std::vector<SourceColumn> nm_columns_by_role(const std::vector<std::string>& cells,
+                                             const std::vector<Role>& roles) {
+  auto columns = columns_by_role(cells, roles);
+  for (SourceColumn& column : columns) {
+    if (units::parse_length(column.unit) == units::Length::pixel) column.quantity = Quantity::other;
+  }
+  return columns;
+}
+
 bool header_has(const FileHead& head, const std::vector<std::string_view>& names) {
   if (head.hdf5) return false;
   try {

@@ -34,13 +34,26 @@ struct Role {
 std::vector<SourceColumn> columns_by_role(const std::vector<std::string>& cells,
                                           const std::vector<Role>& roles);
 
-/// Whether the beginning of a file has a header with all these cells (normalised names).
-bool header_has(const FileHead& head, const std::vector<std::string_view>& names);
+/// The same for tables that give lengths in camera pixels and in nm side by side: pixels are only kept.
+std::vector<SourceColumn> nm_columns_by_role(const std::vector<std::string>& cells,
+                                             const std::vector<Role>& roles);
 
 /// Parses strictly: every line has as many fields as the header, every field is a number as a whole, or a
 /// word in columns whose first row is a word. Errors are Error(input) at file:line:field. Numbers obey no
 /// locale. Empty fields are NaN, which columns that are used do not accept.
 LocalisationTable read_text_table(const std::string& path, const ReadOptions& options,
                                   const TextFormat& format = {});
+
+/// A format whose header cells have these meanings, for `read` of a TableReader: nothing else is special.
+using ColumnsOf = std::vector<SourceColumn> (*)(const TextHeader&, ReadOptions&);
+template <ColumnsOf columns>
+LocalisationTable read_with_columns(const std::string& path, const ReadOptions& options) {
+  TextFormat format;
+  format.columns = columns;
+  return read_text_table(path, options, format);
+}
+
+/// Whether the beginning of a file has a header with all these cells (normalised names).
+bool header_has(const FileHead& head, const std::vector<std::string_view>& names);
 
 }  // namespace smlm
