@@ -1,4 +1,7 @@
 // polar: results on stdout, everything else on stderr, one line for an error; exit codes in docs/faults.md.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -18,9 +21,27 @@ int report(const std::string& what, int code) {
   std::fprintf(stderr, "error: %s\n", line.c_str());
   return code;
 }
+
+// A program started with a closed stdin, stdout or stderr would give its number to the next file it opens,
+// and print into a result.
+void occupy_standard_streams() {
+  while (true) {
+    const int fd = ::open("/dev/null", O_RDWR);
+    if (fd > STDERR_FILENO) ::close(fd);
+    if (fd < 0 || fd > STDERR_FILENO) return;
+  }
+}
+
+// Results on stdout that a full disk swallowed were not delivered.
+int delivered(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  throw smlm::Error(smlm::Fault::io, "stdout", "could not be written",
+                    "check the disk or pipe that it goes to");
+}
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupy_standard_streams();
   CLI::App app{"polar: aligns copies of one structure in localisation microscopy"};
   app.set_version_flag("--version", polar::program_version());
   app.require_subcommand(1);
@@ -33,7 +54,7 @@ int main(int argc, char** argv) {
   polar::cli::add_train(app, action);
   try {
     app.parse(argc, argv);
-    return action();
+    return delivered(action());
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);
   } catch (const CLI::Error& e) {

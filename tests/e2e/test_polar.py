@@ -130,6 +130,72 @@ class Outputs(PolarCase):
         self.assertTrue(any(line["event"] == "progress" and line["done"] <= line["total"] for line in lines))
 
 
+class FullDisk(PolarCase):
+    FORMATS = ("vtkhdf", "csv", "png", "tiff", "ply", "picasso", "thunderstorm")
+
+    def limited(self, limit):
+        """Writes beyond `limit` bytes of a file fail, as they do on a full disk."""
+        def limit_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+        return {"preexec_fn": limit_files, "restore_signals": False}
+
+    def test_every_format_fails_cleanly_wherever_the_disk_is_full(self):
+        self.simulate(SMALL)
+        self.ok("run", self.run_config())
+        (self.folder / "out").mkdir()
+        for name in self.FORMATS:
+            for limit in (0, 200, 5000, 20000):
+                self.export_within(limit, name)
+
+    def export_within(self, limit, name):
+        done = self.polar("export", "results", "--to", name, "--output", "out", **self.limited(limit))
+        out = self.folder / "out"
+        if done.returncode == 0:  # small enough
+            self.assertTrue(all(path.stat().st_size <= limit for path in out.iterdir()), (name, limit))
+        else:
+            self.assertEqual(done.returncode, 4, (name, limit, done.stderr))
+            self.assertRegex(done.stderr, r"\Aerror: [^\n]+\n\Z")
+            self.assertEqual(done.stdout, "")
+            whole = {path.name for path in out.iterdir()}  # of two files the first may be there, never a part of one
+            self.assertLessEqual(whole, {"aligned.hdf", "aligned.yaml"}, (name, limit))
+        for path in out.iterdir():
+            path.unlink()
+
+    def test_run_leaves_the_earlier_result_whole(self):
+        self.simulate(SMALL)
+        config = self.run_config()
+        self.ok("run", config)
+        results = self.folder / "results"
+        before = (results / "results.h5").read_bytes()
+        self.fails(4, "results.h5", "run", config, "--overwrite", **self.limited(5000))
+        self.assertEqual((results / "results.h5").read_bytes(), before)
+        self.assertFalse((results / "summary.json").exists())  # so the directory does not count as complete
+        self.assertEqual([path.name for path in results.iterdir() if path.name.endswith(".tmp")], [])
+        self.ok("run", config, "--resume")
+        self.assertTrue((results / "summary.json").exists())
+
+    def test_results_that_stdout_swallows_are_an_error(self):
+        self.simulate(SMALL)
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([POLAR, "inspect", "data/localisations.csv"], cwd=self.folder, stdout=full,
+                                  stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("error: stdout: could not be written", done.stderr)
+
+
+class ClosedStreams(PolarCase):
+    def test_nothing_is_printed_into_a_result(self):
+        self.simulate(SMALL)
+        self.run_config()
+        self.ok("run", "run.yaml", "--output", "open")
+        done = subprocess.run(["sh", "-c", f"exec '{POLAR}' run run.yaml --output closed <&- >&- 2>&-"], cwd=self.folder,
+                              timeout=300)
+        self.assertEqual(done.returncode, 0)
+        for name in ("poses.csv", "aligned.csv", "aligned.hdf", "template.hdf"):
+            self.assertEqual((self.folder / "closed" / name).read_bytes(), (self.folder / "open" / name).read_bytes())
+
+
 class Signals(PolarCase):
     def stop(self, number):
         process = subprocess.Popen([POLAR, "run", "run.yaml", "--overwrite"], cwd=self.folder, stdout=subprocess.PIPE,

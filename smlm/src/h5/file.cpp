@@ -45,6 +45,9 @@ herr_t collect_name(hid_t, const char* name, const H5L_info_t* info, void* out) 
 }  // namespace
 
 void initialise() {
+  // First of all calls, or it has no effect: a file whose last bytes could not be written stays half closed,
+  // and HDF5 1.10 crashes on it when the program ends. Every file is closed by its owner anyway.
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5PLset_loading_state(0);
 }
