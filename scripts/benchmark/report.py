@@ -51,18 +51,20 @@ def peers_table(study, record):
     return table([study.axis, "object", "method", "recall 5 deg", "recall 10 deg", "median deg", "s", "note"], rows)
 
 
+def period(half_maps):
+    value = half_maps and half_maps["resolution_nm"]
+    return "none" if value is None else f"{value:.2f}"
+
+
 def resolution_table(study, record):
     rows = []
     for (series, label), group in grouped(record["points"]):
         r = group[0].get("resolution") or {}
-        def cell(name):
-            value = r.get(name)
-            return "none" if value is None else f"{value:.2f}"
-        rows.append([place(series, label), cell("resolution_nm"), cell("control_resolution_nm"),
+        rows.append([place(series, label), period(r.get("halves")), period(r.get("noise")),
                      f"{mean(group, 'recall_10'):.3f}", f"{mean(group, 'median_deg'):.2f}",
                      f"{group[0]['accepted']} of {group[0]['particles']}", f"{mean(group, 'wall_s'):.1f}",
                      f"{mean(group, 'cpu_s'):.1f}"])
-    return table([study.axis, "resolution nm", "of the noise control nm", "recall 10 deg", "median deg", "accepted",
+    return table([study.axis, "resolution nm", "of pure noise nm", "recall 10 deg", "median deg", "accepted",
                   "s", "CPU s"], rows)
 
 
