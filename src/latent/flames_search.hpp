@@ -1,0 +1,43 @@
+// FLAMES over the latent distance (paper III.E.a). With t fixed and a common noise, E(nu(R D(z))) does not
+// depend on the view, so every rotation is encoded once for all views of a class; the true loss, with each
+// view's own draws and masks, then judges the best minima.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "polar/flames/neighbour_graph.hpp"
+#include "polar/latent/loss.hpp"
+
+namespace polar {
+
+struct LatentGrid {
+  std::vector<Eigen::Matrix3f> rotation;  // view_from_template
+  NeighbourGraph graph;
+};
+
+/// As `search` says (fast: 1,152 rotations, exhaustive: the paper's L = 50,000), with the paper's 256
+/// neighbours in proportion; planar data: turns about z.
+LatentGrid latent_grid(const LatentOptions& options, bool planar);
+
+/// Views whose noise and size are alike and may share coarse scores.
+struct NoiseClass {
+  std::vector<int> views;
+  Eigen::Matrix3Xf noise;   // draws of its views in turn
+  std::vector<int> source;  // decoded point of each draw
+};
+std::vector<NoiseClass> noise_classes(const LatentViews& views, const LatentOptions& options);
+
+struct Minimum {
+  Pose view_from_template;
+  double loss = 0;  // exact
+};
+
+/// The `most` best local minima of every view, best first, at the translation of `pose`. The grid is turned
+/// by `turn` first.
+std::vector<std::vector<Minimum>> flames(const Autoencoder& model, const LatentViews& views,
+                                         const std::vector<NoiseClass>& classes, const LatentGrid& grid,
+                                         const Eigen::Matrix3f& turn, const Eigen::Matrix3Xf& template_points,
+                                         const std::vector<Pose>& pose, int most);
+
+}  // namespace polar
