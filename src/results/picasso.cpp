@@ -97,7 +97,7 @@ void write_picasso(const std::string& path, const smlm::LocalisationTable& table
   }
   columns.push_back(table_column("group", group));
   smlm::AtomicFile atomic(path);
-  auto file = smlm::h5::File::create(atomic.temporary_path());
+  auto file = smlm::h5::File::create(atomic);
   file.write_table("/locs", columns);
   file.close();
   const std::uint32_t frames = n == 0 ? 1 : *std::max_element(frame.begin(), frame.end()) + 1;

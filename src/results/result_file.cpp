@@ -205,7 +205,7 @@ std::string one_string(const File& file, const char* name) {
 void write_result_file(const std::string& path, const Results& results,
                        const smlm::LocalisationTable& superparticle) {
   smlm::AtomicFile atomic(path);
-  File file = File::create(atomic.temporary_path());
+  File file = File::create(atomic);
   file.write_string_attribute("/", "format", kFormat);
   file.write_attribute("/", "format_version", kFormatVersion);
   write_poses(file, results);

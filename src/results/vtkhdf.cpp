@@ -57,7 +57,7 @@ void write_point_data(File& file, const smlm::LocalisationTable& table) {
 
 void write_points_vtkhdf(const std::string& path, const smlm::LocalisationTable& table) {
   smlm::AtomicFile atomic(path);
-  File file = File::create(atomic.temporary_path());
+  File file = File::create(atomic);
   write_root(file, "UnstructuredGrid");
   const std::size_t n = table.size();
   const auto count = static_cast<std::int64_t>(n);
@@ -80,7 +80,7 @@ void write_points_vtkhdf(const std::string& path, const smlm::LocalisationTable&
 
 void write_volume_vtkhdf(const std::string& path, const Volume& volume) {
   smlm::AtomicFile atomic(path);
-  File file = File::create(atomic.temporary_path());
+  File file = File::create(atomic);
   write_root(file, "ImageData");
   std::vector<std::int64_t> extent;
   for (const std::size_t size : volume.size) {

@@ -17,6 +17,7 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   const std::string& temporary_path() const { return temporary_path_; }
+  const std::string& final_path() const { return final_path_; }
 
   /// fsync of the file, rename, fsync of the folder. A failed fsync is final: it is never tried again.
   void commit();

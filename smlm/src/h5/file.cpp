@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "handle.hpp"
+#include "smlm/atomic_file.hpp"
 
 namespace smlm::h5 {
 namespace {
@@ -50,6 +51,20 @@ void initialise() {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5PLset_loading_state(0);
+}
+
+// A new file at `path`; messages call it `shown`.
+static std::unique_ptr<File::State> created(const std::string& path, const std::string& shown) {
+  initialise();
+  auto state = std::make_unique<File::State>();
+  state->path = shown;
+  state->writable = true;
+  const Handle access = access_properties();
+  state->file = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
+  if (!state->file.valid())
+    throw Error(Fault::io, shown, "cannot be created",
+                "check the folder, its permissions and the disk's space");
+  return state;
 }
 
 std::string parent_of(const std::string& object) {
@@ -104,16 +119,10 @@ File File::open(const std::string& path, const Limits& limits) {
   return File(std::move(state));
 }
 
-File File::create(const std::string& path) {
-  initialise();
-  auto state = std::make_unique<State>();
-  state->path = path;
-  state->writable = true;
-  const Handle access = access_properties();
-  state->file = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
-  if (!state->file.valid())
-    throw Error(Fault::io, path, "cannot be created", "check the folder and its permissions");
-  return File(std::move(state));
+File File::create(const std::string& path) { return File(created(path, path)); }
+
+File File::create(const AtomicFile& atomic) {
+  return File(created(atomic.temporary_path(), atomic.final_path()));
 }
 
 void File::close() {

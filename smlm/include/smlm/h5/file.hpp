@@ -13,6 +13,10 @@
 #include <type_traits>
 #include <vector>
 
+namespace smlm {
+class AtomicFile;
+}
+
 namespace smlm::h5 {
 
 using Shape = std::vector<std::uint64_t>;  // slowest axis first; empty for a scalar
@@ -97,6 +101,9 @@ class File {
   static File open(const std::string& path, const Limits& limits = {});
   /// Creates, replacing what `path` held: give it AtomicFile's temporary path.
   static File create(const std::string& path);
+
+  /// The same under the temporary name of a file that appears whole; messages name the final one.
+  static File create(const AtomicFile& atomic);
   /// Whether the bytes look like HDF5 (also behind a user block, as MATLAB writes). Never throws.
   static bool is_hdf5(const std::string& path);
 
