@@ -15,14 +15,24 @@ def place(series, label):
     return f"{series}, {label}" if series else str(label)
 
 
+def degrees(group):
+    value = mean(group, "median_deg")
+    return "-" if np.isnan(value) else f"{value:.2f}"
+
+
+def peak(group):
+    values = [g["peak_mib"] for g in group if g["peak_mib"] is not None]
+    return f"{max(values):.0f}" if values else "-"
+
+
 def sweep_table(study, record):
     objects = record["objects"]
     rows = []
     for (series, label), group in grouped(record["points"]):
         each = [f"{g['recall_10']:.3f}" for g in group] if len(objects) > 1 else []
         rows.append([place(series, label), f"{mean(group, 'recall_5'):.3f}", f"{mean(group, 'recall_10'):.3f}", *each,
-                     f"{mean(group, 'median_deg'):.2f}", f"{mean(group, 'wall_s'):.1f}", f"{mean(group, 'cpu_s'):.1f}",
-                     f"{max(g['peak_mib'] for g in group):.0f}"])
+                     degrees(group), f"{mean(group, 'wall_s'):.1f}", f"{mean(group, 'cpu_s'):.1f}",
+                     peak(group)])
     return table([study.axis, "recall 5 deg", "recall 10 deg", *(objects if len(objects) > 1 else []), "median deg",
                   "s", "CPU s", "peak MiB"], rows)
 
@@ -61,7 +71,7 @@ def resolution_table(study, record):
     for (series, label), group in grouped(record["points"]):
         r = group[0].get("resolution") or {}
         rows.append([place(series, label), period(r.get("halves")), period(r.get("noise")),
-                     f"{mean(group, 'recall_10'):.3f}", f"{mean(group, 'median_deg'):.2f}",
+                     f"{mean(group, 'recall_10'):.3f}", degrees(group),
                      f"{group[0]['accepted']} of {group[0]['particles']}", f"{mean(group, 'wall_s'):.1f}",
                      f"{mean(group, 'cpu_s'):.1f}"])
     return table([study.axis, "resolution nm", "of pure noise nm", "recall 10 deg", "median deg", "accepted",

@@ -8,7 +8,7 @@ from datetime import datetime, timezone
 import numpy as np
 
 from . import peers, poses
-from .program import Refused
+from .program import NothingRegistered, Refused
 
 
 def machine():
@@ -35,7 +35,10 @@ def measure(study, point, settings, program, folder):
     data, result = folder / "data", folder / "result"
     program.simulate(settings, data)
     load = load_average()
-    summary, cost = program.run(data, {**study.run, **point.run}, result)
+    try:
+        summary, cost = program.run(data, {**study.run, **point.run}, result)
+    except NothingRegistered as nothing:
+        summary, cost = {"accepted": 0, "particles": settings["simulation.particles"]}, nothing.cost
     out = {"wall_s": cost.wall_s, "cpu_s": cost.cpu_s, "peak_mib": cost.peak_mib, "load": load,
            "accepted": summary["accepted"], "particles": summary["particles"],
            "resolution": summary.get("resolution")}

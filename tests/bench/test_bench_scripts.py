@@ -16,7 +16,7 @@ except ImportError as missing:
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 from benchmark import poses, report, runner, study  # noqa: E402
-from benchmark.program import Program, Refused  # noqa: E402
+from benchmark.program import Failed, NothingRegistered, Program, Refused, measured  # noqa: E402
 
 POLAR = Path(os.environ.get("POLAR_PROGRAM", ROOT / "build/src/cli/polar"))
 ROUNDING_DEG = 1e-6  # of doubles written with the shortest digits that read back
@@ -99,6 +99,44 @@ class Studies(unittest.TestCase):
         common = study.yaml.safe_load((ROOT / "configs/studies/common.yaml").read_text())
         labels = {o["label"] for level in study.LEVELS for o in common["objects"][level]}
         self.assertFalse(labels & set(common["symmetric_labels"]))
+
+
+class Memory(unittest.TestCase):
+    def test_the_peak_is_the_programs_own(self):
+        here = bytearray(200 << 20)  # what this process holds must not count
+        _, small = measured([sys.executable, "-S", "-c", "import time; time.sleep(0.3)"])
+        _, large = measured([sys.executable, "-S", "-c",
+                             "import time; x = bytearray(100 << 20); x[::4096] = b'1' * (25 << 10); time.sleep(0.3)"])
+        self.assertEqual(len(here), 200 << 20)
+        self.assertLess(small.peak_mib, 60)
+        self.assertGreater(large.peak_mib, 100)
+        self.assertLess(large.peak_mib, 160)
+
+
+class Failures(unittest.TestCase):
+    """A stand-in for the program that only ends with a code."""
+
+    def ends_with(self, code):
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder) / "polar"
+            program.write_text(f"#!/bin/sh\necho 'somewhere/made.yaml: the reason' >&2\nexit {code}\n")
+            program.chmod(0o755)
+            return Program(program, ROOT).run(Path(folder) / "data", {}, Path(folder) / "result")
+
+    def test_a_refused_configuration_skips_the_study_and_says_why(self):
+        with self.assertRaises(Refused) as caught:
+            self.ends_with(2)
+        self.assertEqual(str(caught.exception), "the reason")
+
+    def test_nothing_registered_is_a_result_with_its_cost(self):
+        with self.assertRaises(NothingRegistered) as caught:
+            self.ends_with(5)
+        self.assertGreater(caught.exception.cost.wall_s, 0)
+
+    def test_anything_else_stops_the_benchmark(self):
+        with self.assertRaises(Failed) as caught:
+            self.ends_with(3)
+        self.assertNotIsInstance(caught.exception, NothingRegistered)
 
 
 class Kept(unittest.TestCase):
