@@ -15,7 +15,8 @@ namespace polar {
 
 namespace {
 
-constexpr std::size_t kDecisionLocalisations = 60000;  // over all views: enough to choose by, cheap to fit
+constexpr double kDecisionLocalisations = 60000;  // over all views: enough to choose by, cheap to fit
+constexpr std::size_t kMostOfAView = 600;
 constexpr int kFuseSweeps = 3;
 constexpr int kMergedSweeps = 8;
 constexpr double kMergeFactors[] = {1, 2, 4, 8};  // times the width of a centre
@@ -23,7 +24,7 @@ constexpr double kSmallestMerge = 0.02;           // particle radii
 constexpr double kMergeTolerance =
     0.002;                          // held-out log density per localisation that fewer centres may cost
 constexpr double kHopeless = 0.02;  // merging farther will not come back from this loss
-constexpr int kPolishRounds = 2;
+constexpr int kPolishRounds = 2, kPolishRoundsOfSites = 4;  // many free centres begin to fit noise
 constexpr int kFewestLocalisations = 4;
 constexpr double kMostOutliers = 0.8;
 constexpr double kMostRotationStd = 0.5236;  // 30 degrees: such a pose says nothing
@@ -33,64 +34,99 @@ double typical_spread(const NoiseModel& n) { return std::max(n.lateral_extra, n.
 // Sites nearer than this are not told apart within one view.
 double reach_of(const NoiseModel& n) { return 2 * typical_spread(n); }
 
-std::vector<std::vector<float>> occupancy_of(const RoundState& state, const FusionData& evidence,
-                                             const NoiseModel& noise) {
-  return occupancy(state.mixture, evidence, state.pose, state.occupancy, reach_of(noise));
+// The views and localisations by which everything but the poses is decided: whole views, because a view of
+// which a few localisations are looked at says little about what it shows.
+struct Jury {
+  std::vector<int> which;
+  Subsets fitted;    // of every view of the problem
+  Subsets held_out;  // empty for views that are not among `which`
+};
+
+Jury jury(const Problem& problem) {
+  const auto per_view = static_cast<double>(std::min<std::size_t>(
+      kMostOfAView,
+      static_cast<std::size_t>(problem.localisations) / std::max<std::size_t>(1, problem.size())));
+  const std::size_t n = std::min(
+      problem.size(), static_cast<std::size_t>(kDecisionLocalisations / std::max(1.0, per_view)) + 1);
+  Jury jury;
+  jury.fitted = first_of(problem.fitted, kMostOfAView);
+  jury.held_out.resize(problem.size());
+  for (std::size_t k = 0; k < n; ++k) {  // evenly through the set: neighbours may share a field of view
+    const std::size_t i = k * problem.size() / n;
+    jury.which.push_back(static_cast<int>(i));
+    jury.held_out[i] = problem.held_out[i];
+  }
+  return jury;
 }
 
-// A centre that dies stays dead: the number of sites is being found.
-MaximisationOptions final_fusion() {
+std::vector<Pose> poses_of(const RoundState& state, const std::vector<int>& which) {
+  std::vector<Pose> pose;
+  for (const int i : which) pose.push_back(state.pose[static_cast<std::size_t>(i)]);
+  return pose;
+}
+
+// A surface is described by centres of any weight. Sites weigh the same: that labels are missing is said by
+// each view's occupancy, and weights of their own would let symmetric particles pile their bright sites on
+// one. A centre that dies stays dead: the number of sites is being found.
+MaximisationOptions final_fusion(const RoundState& state) {
   MaximisationOptions em;
-  em.free_weights = true;
+  em.free_weights = !state.sites;
+  em.support = !state.sites;
   em.weakest_share = 0;
   return em;
 }
 
-void fuse(const Problem& problem, const NoiseModel& noise, const Subsets& subsets, int sweeps,
-          RoundState& state) {
-  FusionData data(problem.views, problem.axes, noise, subsets);
+void fuse(const Problem& problem, const NoiseModel& noise, const Jury& jury, int sweeps, RoundState& state) {
+  FusionData data(problem.views, problem.axes, noise, jury.fitted, jury.which);
+  std::vector<Pose> pose = poses_of(state, jury.which);
+  const auto set_occupancy = [&] {
+    data.set_visibility(occupancy(state.mixture, data, pose, state.occupancy, reach_of(noise)));
+  };
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    data.set_visibility(occupancy_of(state, data, noise));
-    maximise(state.mixture, data, state.pose, final_fusion());
-    data.set_visibility(occupancy_of(state, data, noise));
-    refine_poses(state.mixture, data, state.pose, 2);
+    set_occupancy();
+    maximise(state.mixture, data, pose, final_fusion(state));
+    set_occupancy();
+    refine_poses(state.mixture, data, pose, 2);
   }
-}
-
-Subsets decision_subset(const Problem& problem) {
-  return first_of(problem.fitted, std::max<std::size_t>(
-                                      20, kDecisionLocalisations / std::max<std::size_t>(1, problem.size())));
+  for (std::size_t k = 0; k < pose.size(); ++k) state.pose[static_cast<std::size_t>(jury.which[k])] = pose[k];
 }
 
 // How much a view's own occupancy is believed: judged by localisations that did not estimate it. Infinite
 // where views show the whole template. Returns the mean log density of the held-out localisations.
-double choose_occupancy(const Problem& problem, const Subsets& few, const NoiseModel& noise,
+double choose_occupancy(const Problem& problem, const Jury& jury, const NoiseModel& noise,
                         RoundState& state) {
-  const FusionData fitted(problem.views, problem.axes, noise, few);
-  FusionData judged(problem.views, problem.axes, noise, problem.held_out);
+  const FusionData fitted(problem.views, problem.axes, noise, jury.fitted, jury.which);
+  FusionData judged(problem.views, problem.axes, noise, jury.held_out, jury.which);
+  const std::vector<Pose> pose = poses_of(state, jury.which);
   double best = -std::numeric_limits<double>::infinity();
   for (const double strength : {std::numeric_limits<double>::infinity(), 1.0, 0.3, 0.1, 0.03}) {
-    judged.set_visibility(occupancy(state.mixture, fitted, state.pose, strength, reach_of(noise)));
+    judged.set_visibility(occupancy(state.mixture, fitted, pose, strength, reach_of(noise)));
     const double score =
-        mean_per_localisation(mean_log_likelihood(state.mixture, judged, state.pose), problem.held_out);
+        mean_per_localisation(mean_log_likelihood(state.mixture, judged, pose), jury.which, jury.held_out);
     if (score > best) best = score, state.occupancy = strength;
   }
   return best;
 }
 
-NoiseModel calibrated(const Problem& problem, const Subsets& few, const NoiseModel& noise,
+NoiseModel calibrated(const Problem& problem, const Jury& jury, const NoiseModel& noise,
                       const RoundState& state) {
   std::vector<std::vector<float>> factors;
-  if (std::isfinite(state.occupancy))
-    factors = occupancy_of(state, FusionData(problem.views, problem.axes, noise, few), noise);
-  return calibrate(problem.views, problem.axes, problem.held_out, state.mixture, state.pose, noise, factors)
+  if (std::isfinite(state.occupancy)) {
+    const FusionData fitted(problem.views, problem.axes, noise, jury.fitted, jury.which);
+    auto own =
+        occupancy(state.mixture, fitted, poses_of(state, jury.which), state.occupancy, reach_of(noise));
+    factors.resize(problem.size());
+    for (std::size_t k = 0; k < own.size(); ++k)
+      factors[static_cast<std::size_t>(jury.which[k])] = std::move(own[k]);
+  }
+  return calibrate(problem.views, problem.axes, jury.held_out, state.mixture, state.pose, noise, factors)
       .noise;
 }
 
 }  // namespace
 
 NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noise, RoundState& state) {
-  const Subsets few = decision_subset(problem);
+  const Jury few = jury(problem);
   for (int cycle = 0; cycle < cycles; ++cycle) {
     noise = calibrated(problem, few, noise, state);
     fuse(problem, noise, few, kFuseSweeps, state);
@@ -99,12 +135,13 @@ NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noi
 }
 
 NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state) {
-  const Subsets few = decision_subset(problem);
+  const Jury few = jury(problem);
   double best_score = choose_occupancy(problem, few, noise, state);
   RoundState best = state;
   NoiseModel best_noise = noise;
   for (const double factor : kMergeFactors) {
     RoundState trial = state;
+    trial.sites = true;
     trial.mixture = merged(state.mixture, factor * std::max(typical_spread(noise), kSmallestMerge));
     if (trial.mixture.size() == best.mixture.size()) continue;
     NoiseModel trial_noise = noise;
@@ -127,11 +164,12 @@ NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, Round
 void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& state, Registration& out) {
   FusionData data(problem.views, problem.axes, noise, problem.shuffled);
   std::vector<PolishedPose> polished;
-  for (int round = 0; round < kPolishRounds; ++round) {
-    data.set_visibility(occupancy_of(state, data, noise));
+  const int rounds = state.sites ? kPolishRoundsOfSites : kPolishRounds;
+  for (int round = 0; round < rounds; ++round) {
+    data.set_visibility(occupancy(state.mixture, data, state.pose, state.occupancy, reach_of(noise)));
     polished = polish(state.mixture, data, state.pose);
     for (std::size_t i = 0; i < polished.size(); ++i) state.pose[i] = polished[i].template_from_view;
-    if (round + 1 < kPolishRounds) maximise(state.mixture, data, state.pose, final_fusion());
+    if (round + 1 < rounds) maximise(state.mixture, data, state.pose, final_fusion(state));
   }
   out.view.resize(problem.size());
   for (std::size_t i = 0; i < problem.size(); ++i) {

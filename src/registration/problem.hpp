@@ -13,7 +13,7 @@ namespace polar {
 struct Problem {
   const Views& views;
   std::vector<Eigen::Vector3f> axes;
-  Subsets shuffled;  // all localisations of each view, in a keyed random order: any prefix is a fair sample
+  Subsets shuffled;  // all localisations of each view in a keyed random order: any prefix is a sample
   Subsets fitted;    // the share the template is fitted to while anything is still chosen by likelihood
   Subsets held_out;  // the rest: judges starts, calibration and the number of centres
   std::vector<int> all;
@@ -24,7 +24,16 @@ struct Problem {
   std::size_t size() const { return views.view.size(); }
 };
 
-Problem make_problem(const Views& views, std::uint64_t seed);
+/// `thinned`: samples are even (evenness.hpp), what is too dense is left out of `fitted`. Localisations that
+/// are held out are the same, and even, either way.
+Problem make_problem(const Views& views, std::uint64_t seed, bool thinned);
+
+/// Both ways to see one set of views. Thinning takes away strands, and with them dense detail that tells one
+/// side of a structure from the other; a start believes in one of the two, and they compete.
+struct Problems {
+  Problem thinned, plain;
+  const Problem& of(bool crowded) const { return crowded ? thinned : plain; }
+};
 
 /// The first `most` of every list.
 Subsets first_of(const Subsets& subsets, std::size_t most);

@@ -43,7 +43,8 @@ void warn_about_calibration(const Calibration& c, std::vector<std::string>& warn
 // Everything a run carries from stage to stage.
 struct Run {
   Run(const Views& views, const RegistrationOptions& options, Progress& p)
-      : problem(make_problem(views, options.seed)), progress(p) {
+      : problems{make_problem(views, options.seed, true), make_problem(views, options.seed, false)},
+        progress(p) {
     out.view.resize(views.view.size());
     if (options.search == "exhaustive") {
       rounds.rotations = kExhaustiveRotations;
@@ -54,7 +55,7 @@ struct Run {
   }
   void timed(const char* stage) { out.timings.push_back({stage, watch.lap()}); }
 
-  Problem problem;
+  Problems problems;
   Progress& progress;
   Stopwatch watch;
   RoundOptions rounds;
@@ -64,7 +65,7 @@ struct Run {
 
 // From a registered template to the result.
 Registration from_state(Run& run, RoundState state) {
-  const Problem& problem = run.problem;
+  const Problem& problem = run.problems.of(state.crowded);
   NoiseModel noise;
   noise.planar = problem.planar();
   noise.width = state.width;
@@ -74,6 +75,7 @@ Registration from_state(Run& run, RoundState state) {
   run.timed("centres");
   search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
   noise = calibrate_and_fuse(problem, 1, noise, state);
+  if (state.sites) noise = choose_centres(problem, noise, state);
   run.timed("last search");
   polish_all(problem, noise, state, run.out);
   run.timed("polish");
@@ -108,7 +110,7 @@ std::vector<std::string> violations(const RegistrationOptions& options) {
 
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {
   Run run(views, options, progress);
-  StartsOutcome starts = compete(run.problem, options.starts, run.grid, run.rounds, progress);
+  StartsOutcome starts = compete(run.problems, options.starts, run.grid, run.rounds, progress);
   run.out.starts = starts.report;
   run.timed("starts");
   if (!starts.finished) {
@@ -121,8 +123,8 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
 Registration register_from(const Views& views, const std::vector<Pose>& template_from_view,
                            const RegistrationOptions& options, Progress& progress) {
   Run run(views, options, progress);
-  RoundState state = state_at(run.problem, run.rounds, template_from_view);
-  run_rounds(run.problem, run.grid, run.rounds, progress, state);
+  RoundState state = state_at(run.problems.thinned, run.rounds, template_from_view);
+  run_rounds(run.problems.thinned, run.grid, run.rounds, progress, state);
   run.timed("rounds");
   return from_state(run, std::move(state));
 }

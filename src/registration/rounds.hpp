@@ -32,7 +32,8 @@ struct RoundState {
   bool crowded = true;         // template_tools.hpp
   double occupancy =
       std::numeric_limits<double>::infinity();  // polar/fusion/occupancy.hpp: strength of its prior
-  double width = 0;                             // of the template after the last round kept
+  bool sites = false;        // the template is one of discrete sites of equal weight (finish.hpp)
+  double width = 0;          // of the template after the last round kept
   double held_out = -1e300;  // mean log density of the held-out localisations at that width
   int rounds = 0;
   int escaped = 0;  // in the last search

@@ -27,33 +27,37 @@ int random_starts(const StartContext& context, const AnnealingOptions& options) 
   return std::clamp(static_cast<int>(kLookUpBudget / std::max(1.0, look_ups)), kFewestRandom, kMostRandom);
 }
 
-std::vector<Hypothesis> short_runs(const StartContext& context, const std::vector<std::string>& starts,
+std::vector<Hypothesis> short_runs(const Problems& problems, const std::vector<std::string>& starts,
                                    Progress& progress) {
+  const StartContext thinned = start_context(problems.thinned), plain = start_context(problems.plain);
   const AnnealingOptions options;
   const auto wanted = [&](const char* name) {
     return std::find(starts.begin(), starts.end(), name) != starts.end();
   };
-  const int random = wanted("random") ? random_starts(context, options) : 0;
+  const int random = wanted("random") ? random_starts(plain, options) : 0;
   const int total = random + (wanted("imaged") ? 1 : 0);
   std::vector<Hypothesis> hypotheses;
   for (int k = 0; k < total && !progress.cancelled(); ++k) {
     if (k < random) {
-      hypotheses.push_back(random_start(context, kFirstCentres, k, k % 2 == 0));
+      const bool crowded = k % 2 == 0;
+      const StartContext& context = crowded ? thinned : plain;
+      hypotheses.push_back(random_start(context, kFirstCentres, k, crowded));
       anneal(context, options, false, hypotheses.back());
     } else {
-      hypotheses.push_back(imaged_start(context, kFirstCentres, k));
+      hypotheses.push_back(imaged_start(plain, kFirstCentres, k));
       AnnealingOptions gentle = options;  // the poses are meant to be near: begin narrower and colder
       gentle.first_width = 0.2;
       gentle.first_beta = 1;
       gentle.sweeps = options.sweeps / 2;
-      anneal(context, gentle, true, hypotheses.back());
+      anneal(plain, gentle, true, hypotheses.back());
     }
     progress.step("starts", k + 1, total);
   }
   return hypotheses;
 }
 
-RoundState state_of(const Problem& problem, const StartContext& context, const Hypothesis& h) {
+RoundState state_of(const Problem& problem, const Hypothesis& h) {
+  const StartContext context = start_context(problem);
   RoundState state;
   state.mixture = h.mixture;
   state.crowded = h.crowded;
@@ -65,21 +69,22 @@ RoundState state_of(const Problem& problem, const StartContext& context, const H
 
 }  // namespace
 
-StartsOutcome compete(const Problem& problem, const std::vector<std::string>& starts, const SearchGrid& grid,
-                      const RoundOptions& rounds, Progress& progress) {
-  const StartContext context = start_context(problem);
-  std::vector<Hypothesis> hypotheses = short_runs(context, starts, progress);
+StartsOutcome compete(const Problems& problems, const std::vector<std::string>& starts,
+                      const SearchGrid& grid, const RoundOptions& rounds, Progress& progress) {
+  std::vector<Hypothesis> hypotheses = short_runs(problems, starts, progress);
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
   StartsOutcome out;
   for (const Hypothesis& h : hypotheses) out.report.push_back({h.name, h.held_out, 0, false});
-  const std::size_t finalists = std::min(
-      hypotheses.size(), static_cast<std::size_t>(std::clamp(
-                             static_cast<int>(kFinalistLocalisations / std::max(1.0, problem.localisations)),
-                             1, kMostFinalists)));
+  const std::size_t finalists =
+      std::min(hypotheses.size(),
+               static_cast<std::size_t>(std::clamp(
+                   static_cast<int>(kFinalistLocalisations / std::max(1.0, problems.plain.localisations)), 1,
+                   kMostFinalists)));
   std::size_t best = 0;
   for (std::size_t k = 0; k < finalists && !progress.cancelled(); ++k) {
-    RoundState state = state_of(problem, context, hypotheses[k]);
+    const Problem& problem = problems.of(hypotheses[k].crowded);
+    RoundState state = state_of(problem, hypotheses[k]);
     run_rounds(problem, grid, rounds, progress, state);
     out.report[k].final_held_out_log_likelihood = state.held_out;
     if (k > 0 &&

@@ -19,7 +19,7 @@ struct StartsOutcome {
   bool finished = false;  // false: cancelled
 };
 
-StartsOutcome compete(const Problem& problem, const std::vector<std::string>& starts, const SearchGrid& grid,
-                      const RoundOptions& rounds, Progress& progress);
+StartsOutcome compete(const Problems& problems, const std::vector<std::string>& starts,
+                      const SearchGrid& grid, const RoundOptions& rounds, Progress& progress);
 
 }  // namespace polar

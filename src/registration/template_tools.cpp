@@ -52,11 +52,12 @@ double held_out_score(const Problem& problem, const Subsets& held_out, const std
          static_cast<double>(std::max<std::size_t>(1, mean.size()));
 }
 
-double mean_per_localisation(const std::vector<double>& mean_of_view, const Subsets& judged) {
+double mean_per_localisation(const std::vector<double>& mean_of_view, const std::vector<int>& which,
+                             const Subsets& judged) {
   double total = 0, count = 0;
-  for (std::size_t i = 0; i < mean_of_view.size(); ++i) {
-    const auto n = static_cast<double>(judged[i].size());
-    total += n * mean_of_view[i], count += n;
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    const auto n = static_cast<double>(judged[static_cast<std::size_t>(which[k])].size());
+    total += n * mean_of_view[k], count += n;
   }
   return total / std::max(1.0, count);
 }
@@ -64,7 +65,7 @@ double mean_per_localisation(const std::vector<double>& mean_of_view, const Subs
 double held_out_score(const Problem& problem, const Mixture& mixture, const std::vector<Pose>& pose,
                       const NoiseModel& noise) {
   const FusionData data(problem.views, problem.axes, noise, problem.held_out, problem.all);
-  return mean_per_localisation(mean_log_likelihood(mixture, data, pose), problem.held_out);
+  return mean_per_localisation(mean_log_likelihood(mixture, data, pose), problem.all, problem.held_out);
 }
 
 }  // namespace polar

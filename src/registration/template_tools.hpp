@@ -29,7 +29,8 @@ double held_out_score(const Problem& problem, const Subsets& held_out, const std
 double held_out_score(const Problem& problem, const Mixture& mixture, const std::vector<Pose>& pose,
                       const NoiseModel& noise);
 
-/// From means per view to the mean over the localisations `judged`.
-double mean_per_localisation(const std::vector<double>& mean_of_view, const Subsets& judged);
+/// From means per view, those of `which`, to the mean over the localisations `judged`.
+double mean_per_localisation(const std::vector<double>& mean_of_view, const std::vector<int>& which,
+                             const Subsets& judged);
 
 }  // namespace polar

@@ -70,10 +70,10 @@ class BadInput(PolarCase):
         self.fails(2, "rotation group", "evaluate", data, "--truth", data / "poses.csv", "--symmetry", "C0")
 
     def test_export_needs_a_record(self):
-        self.fails(4, "results.h5", "export", "results.h5", "--format", "csv")
+        self.fails(4, "results.h5", "export", "results.h5", "--to", "csv")
         self.write("results.h5", "not HDF5")
-        self.fails(3, "results.h5", "export", "results.h5", "--format", "csv")
-        self.fails(2, "--format", "export", "results.h5", "--format", "jpeg")
+        self.fails(3, "results.h5", "export", "results.h5", "--to", "csv")
+        self.fails(2, "--to", "export", "results.h5", "--format", "jpeg")
 
     def test_memory_limit_is_6(self):
         config = self.write("big.yaml", "simulation: {particles: 20000, sampling: points, points: 20000}\n")
@@ -116,7 +116,7 @@ class Outputs(PolarCase):
         self.assertEqual((results / "poses.csv").stat().st_mtime_ns, before)
         self.fails(3, "another input or configuration", "run", config, "--resume", "--set", "registration.seed=2")
         (self.folder / "again").mkdir()
-        self.ok("export", results, "--format", "csv,vtkhdf,png", "--output", "again")
+        self.ok("export", results, "--to", "csv,vtkhdf,png", "--output", "again")
         for name in ("aligned.csv", "aligned.hdf", "template.hdf", "preview.png"):
             self.assertEqual((self.folder / "again" / name).read_bytes(), (results / name).read_bytes(), name)
 
