@@ -12,6 +12,7 @@
 #include "halves.hpp"
 #include "input_hash.hpp"
 #include "output_directory.hpp"
+#include "polar/model/shipped_weights.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "polar/pipeline/version.hpp"
 #include "polar/registration/prepare.hpp"
@@ -44,6 +45,7 @@ std::string computation_text(RunConfig config) {
   const auto name_only = [](std::string& file) { file = std::filesystem::path(file).filename().string(); };
   std::for_each(config.files.begin(), config.files.end(), name_only);
   name_only(config.read.pick.centres);
+  name_only(config.registration.weights);
   return run_config_text(config);
 }
 
@@ -51,6 +53,7 @@ std::string computation_text(RunConfig config) {
 std::vector<std::string> input_files(const RunConfig& config) {
   std::vector<std::string> files = config.files;
   if (!config.read.pick.centres.empty()) files.push_back(config.read.pick.centres);
+  if (needs_weights(config.registration)) files.push_back(weights_path(config.registration.weights));
   return files;
 }
 

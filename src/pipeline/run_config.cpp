@@ -40,10 +40,25 @@ void fields(Visitor& v, RunConfig& c) {
     RegistrationOptions& o = c.registration;
     s.field("seed", o.seed);
     s.field("starts", o.starts);
-    s.field("method", c.method);
+    s.field("method", o.method);
     s.field("search", o.search);
-    s.field("optimizer", c.optimizer);
+    s.field("optimizer", o.optimizer);
     s.field("symmetry", o.symmetry);
+    s.field("weights", o.weights);
+    s.section("latent", [&](auto& latent) {
+      latent.field("noise", o.latent.noise);
+      latent.field("matched_counts", o.latent.matched_counts);
+      latent.field("localisations", o.latent.localisations);
+      latent.field("visibility", o.latent.visibility);
+      latent.field("outlier_fraction", o.latent.outlier_fraction);
+      latent.field("regularisation", o.latent.regularisation);
+      latent.field("regularisation_radius", o.latent.regularisation_radius);
+      latent.field("medoids", o.latent.medoids);
+      latent.field("basins", o.latent.basins);
+      latent.field("rotations", o.latent.rotations);
+      latent.field("most_loops", o.latent.most_loops);
+      latent.field("escape_deg", o.latent.escape_deg);
+    });
   });
   v.section("output", [&](auto& s) {
     s.field("directory", c.output.directory);
@@ -52,12 +67,6 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("preview", c.output.preview);
     s.field("resolution", c.output.resolution);
   });
-}
-
-void require_word(std::vector<std::string>& faults, const char* key, const std::string& value,
-                  const char* only) {
-  if (value != only)
-    faults.push_back(std::string(key) + " is '" + value + "', this version knows " + only + " only");
 }
 
 void check_formats(const std::vector<std::string>& formats, std::vector<std::string>& faults) {
@@ -78,8 +87,6 @@ void check(const RunConfig& c, const std::string& path) {
   if (c.files.empty()) faults.emplace_back("input.files is missing: list the localisation tables");
   for (const std::string& v : violations(c.read)) faults.push_back("input." + v);
   for (const std::string& v : violations(c.registration)) faults.push_back(v);
-  require_word(faults, "registration.method", c.method, "likelihood");
-  require_word(faults, "registration.optimizer", c.optimizer, "levenberg_marquardt");
   check_formats(c.output.formats, faults);
   if (c.output.resolution != "none" && c.output.resolution != "halves")
     faults.push_back("output.resolution is '" + c.output.resolution + "', expected none or halves");
@@ -100,6 +107,8 @@ RunConfig load_run_config(const std::string& path, const std::vector<std::string
   const std::string folder = pipeline::folder_of(path);
   if (!config.read.pick.centres.empty())
     config.read.pick.centres = pipeline::resolve_path(config.read.pick.centres, folder);
+  if (!config.registration.weights.empty())
+    config.registration.weights = pipeline::resolve_path(config.registration.weights, folder);
   config.files = pipeline::expand_files(config.files, folder);
   config.output.directory = pipeline::resolve_path(config.output.directory, folder);
   return config;

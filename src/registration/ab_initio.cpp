@@ -55,13 +55,6 @@ void draw_poses(const StartContext& context, const NoiseModel& noise, const Sear
   });
 }
 
-Hypothesis with_template(const StartContext& context, int centres, Hypothesis h) {
-  h.mixture = scattered_mixture(context.problem, context.fitted, context.which, h.pose, centres,
-                                static_cast<std::uint64_t>(h.number));
-  h.mixture.outlier_fraction = first_outlier_fraction(h.crowded);
-  return h;
-}
-
 }  // namespace
 
 StartContext start_context(const Problem& problem) {
@@ -73,6 +66,13 @@ StartContext start_context(const Problem& problem) {
     context.which = few;
   }
   return context;
+}
+
+Hypothesis with_template(const StartContext& context, int centres, Hypothesis h) {
+  h.mixture = scattered_mixture(context.problem, context.fitted, context.which, h.pose, centres,
+                                static_cast<std::uint64_t>(h.number));
+  h.mixture.outlier_fraction = first_outlier_fraction(h.crowded);
+  return h;
 }
 
 Hypothesis random_start(const StartContext& context, int centres, int number, bool crowded) {

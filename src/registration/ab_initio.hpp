@@ -43,6 +43,9 @@ struct Hypothesis {
   double held_out = 0;  // mean log density per localisation that was not fitted
 };
 
+/// A template of `centres` scattered over the localisations under the poses of `h`.
+Hypothesis with_template(const StartContext& context, int centres, Hypothesis h);
+
 /// First poses and a template scattered over the localisations under them.
 Hypothesis random_start(const StartContext& context, int centres, int number, bool crowded);
 Hypothesis imaged_start(const StartContext& context, int centres, int number);

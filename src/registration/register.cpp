@@ -5,6 +5,7 @@
 #include <set>
 
 #include "finish.hpp"
+#include "latent_method.hpp"
 #include "starts.hpp"
 
 namespace polar {
@@ -93,14 +94,19 @@ Registration from_state(Run& run, RoundState state) {
 std::vector<std::string> violations(const RegistrationOptions& options) {
   std::vector<std::string> faults;
   if (options.starts.empty())
-    faults.push_back("registration.starts: at least one of random, imaged is needed");
+    faults.push_back("registration.starts: at least one of polar, random, imaged is needed");
   for (const std::string& s : options.starts)
-    if (s != "random" && s != "imaged")
-      faults.push_back("registration.starts: '" + s + "' is none of random, imaged");
+    if (s != "polar" && s != "random" && s != "imaged")
+      faults.push_back("registration.starts: '" + s + "' is none of polar, random, imaged");
   if (std::set<std::string>(options.starts.begin(), options.starts.end()).size() != options.starts.size())
     faults.push_back("registration.starts: a start is named twice");
   if (options.search != "fast" && options.search != "exhaustive")
     faults.push_back("registration.search: '" + options.search + "' is neither fast nor exhaustive");
+  if (options.method != "likelihood" && options.method != "latent")
+    faults.push_back("registration.method is '" + options.method + "', neither likelihood nor latent");
+  LatentOptions latent = options.latent;
+  latent.optimizer = options.optimizer;
+  for (const std::string& v : violations(latent)) faults.push_back("registration." + v);
   if (options.symmetry != "none")
     faults.push_back(
         "registration.symmetry: '" + options.symmetry +
@@ -108,9 +114,20 @@ std::vector<std::string> violations(const RegistrationOptions& options) {
   return faults;
 }
 
+bool needs_weights(const RegistrationOptions& options) {
+  return options.method == "latent" ||
+         std::find(options.starts.begin(), options.starts.end(), "polar") != options.starts.end();
+}
+
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {
+  if (options.method == "latent") {
+    Stopwatch watch;
+    Registration out = latent_method(make_problem(views, options.seed, false), options, progress);
+    out.timings.push_back({"latent", watch.lap()});
+    return out;
+  }
   Run run(views, options, progress);
-  StartsOutcome starts = compete(run.problems, options.starts, run.grid, run.rounds, progress);
+  StartsOutcome starts = compete(run.problems, options, run.grid, run.rounds, progress);
   run.out.starts = starts.report;
   run.timed("starts");
   if (!starts.finished) {

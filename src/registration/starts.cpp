@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "polar_start.hpp"
+
 namespace polar {
 
 namespace {
@@ -27,15 +29,16 @@ int random_starts(const StartContext& context, const AnnealingOptions& options) 
   return std::clamp(static_cast<int>(kLookUpBudget / std::max(1.0, look_ups)), kFewestRandom, kMostRandom);
 }
 
-std::vector<Hypothesis> short_runs(const Problems& problems, const std::vector<std::string>& starts,
+std::vector<Hypothesis> short_runs(const Problems& problems, const RegistrationOptions& wishes,
                                    Progress& progress) {
   const StartContext thinned = start_context(problems.thinned), plain = start_context(problems.plain);
   const AnnealingOptions options;
   const auto wanted = [&](const char* name) {
-    return std::find(starts.begin(), starts.end(), name) != starts.end();
+    return std::find(wishes.starts.begin(), wishes.starts.end(), name) != wishes.starts.end();
   };
   const int random = wanted("random") ? random_starts(plain, options) : 0;
-  const int total = random + (wanted("imaged") ? 1 : 0);
+  const bool polar = wanted("polar");
+  const int total = random + (polar ? 1 : 0) + (wanted("imaged") ? 1 : 0);
   std::vector<Hypothesis> hypotheses;
   for (int k = 0; k < total && !progress.cancelled(); ++k) {
     if (k < random) {
@@ -44,7 +47,9 @@ std::vector<Hypothesis> short_runs(const Problems& problems, const std::vector<s
       hypotheses.push_back(random_start(context, kFirstCentres, k, crowded));
       anneal(context, options, false, hypotheses.back());
     } else {
-      hypotheses.push_back(imaged_start(plain, kFirstCentres, k));
+      hypotheses.push_back(polar && k == random
+                               ? polar_start(plain, *autoencoder(wishes), wishes, kFirstCentres, k)
+                               : imaged_start(plain, kFirstCentres, k));
       AnnealingOptions gentle = options;  // the poses are meant to be near: begin narrower and colder
       gentle.first_width = 0.2;
       gentle.first_beta = 1;
@@ -69,9 +74,9 @@ RoundState state_of(const Problem& problem, const Hypothesis& h) {
 
 }  // namespace
 
-StartsOutcome compete(const Problems& problems, const std::vector<std::string>& starts,
-                      const SearchGrid& grid, const RoundOptions& rounds, Progress& progress) {
-  std::vector<Hypothesis> hypotheses = short_runs(problems, starts, progress);
+StartsOutcome compete(const Problems& problems, const RegistrationOptions& options, const SearchGrid& grid,
+                      const RoundOptions& rounds, Progress& progress) {
+  std::vector<Hypothesis> hypotheses = short_runs(problems, options, progress);
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
   StartsOutcome out;

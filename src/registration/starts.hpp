@@ -8,7 +8,7 @@
 
 #include "ab_initio.hpp"
 #include "polar/core/progress.hpp"
-#include "polar/registration/registration.hpp"
+#include "polar/registration/register.hpp"
 #include "rounds.hpp"
 
 namespace polar {
@@ -19,7 +19,7 @@ struct StartsOutcome {
   bool finished = false;  // false: cancelled
 };
 
-StartsOutcome compete(const Problems& problems, const std::vector<std::string>& starts,
-                      const SearchGrid& grid, const RoundOptions& rounds, Progress& progress);
+StartsOutcome compete(const Problems& problems, const RegistrationOptions& options, const SearchGrid& grid,
+                      const RoundOptions& rounds, Progress& progress);
 
 }  // namespace polar

@@ -84,7 +84,7 @@ Task simulated(const Structure& structure, const Case& c) {
 }
 
 /// A group of polar_sample.h5: views x points x 3 of a template of radius 1, sigmas in the frame of the view.
-Task sampled(const std::string& path, const std::string& group) {
+Task sampled(const std::string& path, const std::string& group, std::size_t most_views) {
   const auto h5 = smlm::h5::File::open(path);
   const auto shape = h5.info("/" + group).shape;
   const auto flat = h5.read<double>("/" + group);
@@ -96,7 +96,7 @@ Task sampled(const std::string& path, const std::string& group) {
   for (std::size_t a = 0; a < 3; ++a)
     covariance[a == 0 ? 0 : 2 * a + 1] = static_cast<float>(std::pow(sigma[a] * kRadius_nm, 2));
   Task task;
-  for (std::size_t i = 0; i < shape[0]; ++i) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(shape[0], most_views); ++i) {
     table.particle_names.push_back(std::to_string(i + 1));
     for (std::size_t j = 0; j < shape[1]; ++j) {
       const double* x = &flat[(i * shape[1] + j) * 3];
@@ -183,8 +183,8 @@ void hard_case(const Shape& shape, const Structure& structure, const Case& c,
 }
 
 void sample_case(const std::string& path, const std::string& group, std::uint64_t seeds,
-                 RegistrationOptions options) {
-  const Task task = sampled(path, group);
+                 std::size_t most_views, RegistrationOptions options) {
+  const Task task = sampled(path, group, most_views);
   Progress silent;
   for (options.seed = 1; options.seed <= seeds; ++options.seed) {
     const Outcome o = measured(task, [&](const Views& v) { return register_views(v, options, silent); });
@@ -211,6 +211,7 @@ int main(int argc, char** argv) {
   std::string folder, sample;
   std::vector<std::string> shapes, cases;
   std::uint64_t seeds = 3;
+  std::size_t most_views = 100;
   RegistrationOptions options;
   app.add_option("folder", folder, "folder of princeton_shape_benchmark_dev.h5");
   app.add_option("--sample", sample, "polar_sample.h5: its two groups");
@@ -218,6 +219,19 @@ int main(int argc, char** argv) {
   app.add_option("--shape", shapes, "only these shapes");
   app.add_option("--case", cases, "only these cases or groups");
   app.add_option("--search", options.search, "fast | exhaustive");
+  app.add_option("--start", options.starts, "only these starts");
+  app.add_option("--method", options.method, "likelihood | latent");
+  app.add_option("--optimizer", options.optimizer, "levenberg_marquardt | adamw");
+  app.add_option("--visibility", options.latent.visibility, "of the latent registration");
+  app.add_option("--outliers", options.latent.outlier_fraction, "of the latent registration");
+  app.add_option("--noise", options.latent.noise, "per_localisation | common | none");
+  app.add_option("--localisations", options.latent.localisations, "of a view in the latent registration");
+  app.add_option("--rotations", options.latent.rotations, "of the latent registration's grid");
+  app.add_option("--basins", options.latent.basins, "of the latent registration's multistart");
+  app.add_option("--medoids", options.latent.medoids, "first templates of the latent registration");
+  app.add_option("--matched", options.latent.matched_counts, "as many template points as localisations");
+  app.add_option("--loops", options.latent.most_loops, "of the latent registration");
+  app.add_option("--views", most_views, "of each group of the sample, at most");
   CLI11_PARSE(app, argc, argv);
   try {
     const std::vector<std::string> faults = violations(options);
@@ -226,7 +240,7 @@ int main(int argc, char** argv) {
       std::puts("| group | search | seed | recall 5 deg | recall 10 deg | median deg | s | peak MiB |");
       std::puts("|---|---|---|---|---|---|---|---|");
       for (const char* group : {"anisotropy", "cropped_noisy"})
-        if (chosen(cases, group)) sample_case(sample, group, seeds, options);
+        if (chosen(cases, group)) sample_case(sample, group, seeds, most_views, options);
     }
     if (folder.empty()) return 0;
     std::puts(

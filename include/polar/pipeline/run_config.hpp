@@ -24,8 +24,6 @@ struct OutputOptions {
 struct RunConfig {
   std::vector<std::string> files;  // absolute, expanded
   smlm::ReadOptions read;
-  std::string method = "likelihood";              // registration.method: what poses are judged by
-  std::string optimizer = "levenberg_marquardt";  // registration.optimizer
   RegistrationOptions registration;
   OutputOptions output;
 };

@@ -7,19 +7,27 @@
 
 #include "polar/core/progress.hpp"
 #include "polar/core/view.hpp"
+#include "polar/latent/options.hpp"
 #include "polar/registration/registration.hpp"
 
 namespace polar {
 
 struct RegistrationOptions {
   std::uint64_t seed = 1;                                  // every random choice follows from it
-  std::vector<std::string> starts = {"random", "imaged"};  // hypotheses that compete
-  std::string search = "fast";                             // fast | exhaustive
-  std::string symmetry = "none";                           // none; nothing else can be imposed yet
+  std::vector<std::string> starts = {"random", "imaged"};  // hypotheses that compete; also: polar
+  std::string method = "likelihood";  // likelihood | latent: the paper's registration and nothing after it
+  std::string search = "fast";        // fast | exhaustive
+  std::string optimizer = "levenberg_marquardt";  // of the latent registration: | adamw (the paper's)
+  std::string weights;                            // of the autoencoder; empty: those that ship
+  LatentOptions latent;                           // seed, search and optimizer are taken from here
+  std::string symmetry = "none";                  // none; nothing else can be imposed yet
 };
 
 /// One sentence per fault, empty when the options can be used.
 std::vector<std::string> violations(const RegistrationOptions& options);
+
+/// Whether the autoencoder takes part: as the method or as one of the starts.
+bool needs_weights(const RegistrationOptions& options);
 
 /// Registers all views. Never throws for a bad view: that view is not accepted and says why.
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress);
