@@ -22,8 +22,9 @@ constexpr int kMergedSweeps = 8;
 constexpr double kMergeFactors[] = {1, 2, 4, 8};  // times the width of a centre
 constexpr double kSmallestMerge = 0.02;           // particle radii
 constexpr double kMergeTolerance =
-    0.002;                          // held-out log density per localisation that fewer centres may cost
-constexpr double kHopeless = 0.02;  // merging farther will not come back from this loss
+    0.002;                             // held-out log density per localisation that fewer centres may cost
+constexpr double kHopeless = 0.02;     // merging farther will not come back from this loss
+constexpr double kLeastOfSites = 0.3;  // occupancy strength: few sites are missing by chance, not by a crop
 constexpr int kPolishRounds = 2, kPolishRoundsOfSites = 4;  // many free centres begin to fit noise
 constexpr int kFewestLocalisations = 4;
 constexpr double kMostOutliers = 0.8;
@@ -100,6 +101,7 @@ double choose_occupancy(const Problem& problem, const Jury& jury, const NoiseMod
   const std::vector<Pose> pose = poses_of(state, jury.which);
   double best = -std::numeric_limits<double>::infinity();
   for (const double strength : {std::numeric_limits<double>::infinity(), 1.0, 0.3, 0.1, 0.03}) {
+    if (state.sites && strength < kLeastOfSites) break;
     judged.set_visibility(occupancy(state.mixture, fitted, pose, strength, reach_of(noise)));
     const double score =
         mean_per_localisation(mean_log_likelihood(state.mixture, judged, pose), jury.which, jury.held_out);
