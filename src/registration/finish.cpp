@@ -144,6 +144,7 @@ NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, Round
   for (const double factor : kMergeFactors) {
     RoundState trial = state;
     trial.sites = true;
+    trial.occupancy = std::max(trial.occupancy, kLeastOfSites);
     trial.mixture = merged(state.mixture, factor * std::max(typical_spread(noise), kSmallestMerge));
     if (trial.mixture.size() == best.mixture.size()) continue;
     NoiseModel trial_noise = noise;
