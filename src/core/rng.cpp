@@ -1,6 +1,8 @@
 #include "polar/core/rng.hpp"
 
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "polar/core/constants.hpp"
 #include "polar/core/so3.hpp"
@@ -78,6 +80,13 @@ Eigen::Matrix3d KeyedRandom::rotation() {
 Eigen::Vector3d KeyedRandom::direction() {
   const double z = 2.0 * uniform() - 1.0, phi = kTwoPi * uniform(), r = std::sqrt(1.0 - z * z);
   return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+std::vector<std::uint32_t> random_order(std::size_t n, KeyedRandom random) {
+  std::vector<std::uint32_t> order(n);
+  std::iota(order.begin(), order.end(), 0u);
+  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+  return order;
 }
 
 }  // namespace polar

@@ -12,7 +12,6 @@ namespace polar {
 
 namespace {
 
-constexpr float kTwoPiF = static_cast<float>(kTwoPi);
 constexpr float kGoldenAngle = 2.39996322972865f;
 constexpr float kVoxelPerSigma =
     0.8f;  // voxel over the sharpest standard deviation: nearest look-up errs by .23 of it

@@ -11,7 +11,6 @@
 namespace polar {
 
 namespace {
-constexpr float kTwoPiF = static_cast<float>(kTwoPi);
 constexpr float kCutOff = 4.0f;              // standard deviations; as in the kernel
 constexpr float kNearlyIsotropic = 1.02f;    // ratio of standard deviations below which no axis is told apart
 constexpr float kSmallestVariance = 1e-10f;  // (1e-5 of the particle radius)^2: "exact" localisations

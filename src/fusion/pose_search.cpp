@@ -1,21 +1,13 @@
 #include "polar/fusion/pose_search.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "polar/flames/local_minima.hpp"
-#include "polar/flames/rotation_grid.hpp"
 
 namespace polar {
 
 namespace {
-
-// The paper's neighbourhood: 256 of 50,000 rotations.
-constexpr double kNeighbourShare = 256.0 / 50000.0;
-constexpr int kFewestNeighbours = 10;
-constexpr int kPlanarNeighbours = 12;
-constexpr int kWorthCaching = 4000;  // rotations; smaller graphs are built in no time
 
 void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen::Matrix3f& rotation,
            float step, Eigen::Vector3f& translation, float& best) {
@@ -34,18 +26,6 @@ void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen:
 }
 
 }  // namespace
-
-SearchGrid search_grid(int rotations, bool planar) {
-  const std::vector<Eigen::Quaternionf> q = planar ? planar_rotations(rotations) : super_fibonacci(rotations);
-  const int k = planar
-                    ? kPlanarNeighbours
-                    : std::max(kFewestNeighbours, static_cast<int>(std::lround(kNeighbourShare * rotations)));
-  SearchGrid grid;
-  grid.graph =
-      rotations >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory()) : neighbour_graph(q, k);
-  for (const Eigen::Quaternionf& r : q) grid.rotation.push_back(r.toRotationMatrix());
-  return grid;
-}
 
 std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar) {
   std::vector<Eigen::Vector3f> out = {Eigen::Vector3f::Zero()};

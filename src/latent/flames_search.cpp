@@ -6,17 +6,12 @@
 #include "mask.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/flames/local_minima.hpp"
-#include "polar/flames/rotation_grid.hpp"
 
 namespace polar {
 
 namespace {
 
-constexpr int kFastRotations = 1152, kExhaustiveRotations = 50000;
-constexpr int kFastPlanar = 180, kExhaustivePlanar = 720;
-constexpr double kNeighbourShare = 256.0 / 50000.0;  // the paper's k of its L
-constexpr int kFewestNeighbours = 10, kPlanarNeighbours = 12;
-constexpr int kWorthCaching = 4000;      // rotations; smaller graphs are built in no time
+constexpr int kFastRotations = 1152, kFastPlanar = 180;
 constexpr std::size_t kTile = 256;       // rotations whose encodings are held at a time
 constexpr std::size_t kViewBlock = 512;  // views whose coarse losses are held at a time
 constexpr int kJudged = 3;               // times as many minima are judged exactly as are kept
@@ -48,7 +43,7 @@ float distance(const float* template_latent, const Eigen::VectorXf& view_latent,
 // Coarse losses of `views` (all of class `c`) over the grid, one row a view.
 std::vector<std::vector<float>> coarse(const Autoencoder& model, const LatentViews& views,
                                        const NoiseClass& c, const std::vector<int>& which,
-                                       const LatentGrid& grid, const Eigen::Matrix3f& turn,
+                                       const SearchGrid& grid, const Eigen::Matrix3f& turn,
                                        const Eigen::Matrix3Xf& template_points,
                                        const std::vector<Pose>& pose) {
   // t is fixed: instead of the template the view is shifted, so that one encoding serves every view.
@@ -91,23 +86,15 @@ Pose centred(const LatentView& view, const Eigen::Matrix3Xf& template_points, Po
 
 }  // namespace
 
-LatentGrid latent_grid(const LatentOptions& options, bool planar) {
+SearchGrid latent_grid(const LatentOptions& options, bool planar) {
   const bool exhaustive = options.search == "exhaustive";
-  const int usual = planar ? (exhaustive ? kExhaustivePlanar : kFastPlanar)
+  const int usual = planar ? (exhaustive ? kExhaustivePlanarRotations : kFastPlanar)
                            : (exhaustive ? kExhaustiveRotations : kFastRotations);
-  const int count = options.rotations > 0 ? options.rotations : usual;
-  const std::vector<Eigen::Quaternionf> rotations = planar ? planar_rotations(count) : super_fibonacci(count);
-  LatentGrid grid;
-  for (const Eigen::Quaternionf& q : rotations) grid.rotation.push_back(q.toRotationMatrix());
-  const int k = planar ? kPlanarNeighbours
-                       : std::max(kFewestNeighbours, static_cast<int>(std::lround(kNeighbourShare * count)));
-  grid.graph = count >= kWorthCaching ? cached_neighbour_graph(rotations, k, cache_directory())
-                                      : neighbour_graph(rotations, k);
-  return grid;
+  return search_grid(options.rotations > 0 ? options.rotations : usual, planar);
 }
 
 std::vector<std::vector<Minimum>> flames(const Autoencoder& model, const LatentViews& views,
-                                         const std::vector<NoiseClass>& classes, const LatentGrid& grid,
+                                         const std::vector<NoiseClass>& classes, const SearchGrid& grid,
                                          const Eigen::Matrix3f& turn, const Eigen::Matrix3Xf& template_points,
                                          const std::vector<Pose>& pose, int most) {
   std::vector<std::vector<Minimum>> minima(views.view.size());

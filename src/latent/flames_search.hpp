@@ -6,19 +6,14 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "polar/flames/neighbour_graph.hpp"
+#include "polar/flames/search_grid.hpp"
 #include "polar/latent/loss.hpp"
 
 namespace polar {
 
-struct LatentGrid {
-  std::vector<Eigen::Matrix3f> rotation;  // view_from_template
-  NeighbourGraph graph;
-};
-
-/// As `search` says (fast: 1,152 rotations, exhaustive: the paper's L = 50,000), with the paper's 256
-/// neighbours in proportion; planar data: turns about z.
-LatentGrid latent_grid(const LatentOptions& options, bool planar);
+/// Rotations (view_from_template) as `search` says: fast 1,152, exhaustive the paper's L; planar data: turns
+/// about z.
+SearchGrid latent_grid(const LatentOptions& options, bool planar);
 
 /// Views whose noise and size are alike and may share coarse scores.
 struct NoiseClass {
@@ -36,7 +31,7 @@ struct Minimum {
 /// The `most` best local minima of every view, best first, at the translation of `pose`. The grid is turned
 /// by `turn` first.
 std::vector<std::vector<Minimum>> flames(const Autoencoder& model, const LatentViews& views,
-                                         const std::vector<NoiseClass>& classes, const LatentGrid& grid,
+                                         const std::vector<NoiseClass>& classes, const SearchGrid& grid,
                                          const Eigen::Matrix3f& turn, const Eigen::Matrix3Xf& template_points,
                                          const std::vector<Pose>& pose, int most);
 

@@ -196,7 +196,7 @@ class Algorithm1 {
   const LatentOptions options_;
   Progress& progress_;
   LatentViews views_;
-  LatentGrid grid_;
+  SearchGrid grid_;
   std::vector<DescendedPose> second_;
 };
 

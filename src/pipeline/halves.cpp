@@ -1,8 +1,5 @@
 #include "halves.hpp"
 
-#include <algorithm>
-#include <numeric>
-
 #include "polar/core/rng.hpp"
 #include "polar/registration/prepare.hpp"
 #include "polar/results/half_maps.hpp"
@@ -15,10 +12,7 @@ constexpr std::size_t kFewestParticles = 4;
 
 // Which half every particle belongs to.
 std::vector<bool> split(std::size_t n, std::uint64_t seed) {
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  KeyedRandom random(seed, 0, kSplitStage);
-  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+  const std::vector<std::uint32_t> order = random_order(n, KeyedRandom(seed, 0, kSplitStage));
   std::vector<bool> second(n);
   for (std::size_t i = 0; i < n; ++i) second[order[i]] = i % 2 == 1;
   return second;

@@ -83,11 +83,6 @@ smlm::ParticleSet read_particles(const RunConfig& config, Progress& progress) {
   return set;
 }
 
-std::size_t accepted(const Results& r) {
-  return static_cast<std::size_t>(std::count_if(r.registration.view.begin(), r.registration.view.end(),
-                                                [](const RegisteredView& v) { return v.accepted; }));
-}
-
 // Rejected particles by reason, the most frequent first.
 std::vector<std::pair<std::size_t, std::string>> rejections(const Results& r) {
   std::map<std::string, std::size_t> count;
@@ -136,7 +131,7 @@ std::string resolution_line(const ResolutionReport& r) {
 std::vector<std::string> describe(const Results& r, const std::string& directory, double seconds) {
   const Registration& g = r.registration;
   const std::size_t n = r.particles.particles.size();
-  std::vector<std::string> lines = {"particles    " + std::to_string(accepted(r)) + " of " +
+  std::vector<std::string> lines = {"particles    " + std::to_string(accepted_particles(r)) + " of " +
                                     std::to_string(n) + " accepted"};
   for (const auto& [count, reason] : rejections(r))
     lines.push_back("rejected     " + std::to_string(count) + ": " + reason);
@@ -175,7 +170,7 @@ nlohmann::json summary_json(const Results& r, const std::vector<std::string>& li
                             {"input_hash", r.provenance.input_hash},
                             {"seed", r.provenance.seed},
                             {"particles", r.particles.particles.size()},
-                            {"accepted", accepted(r)},
+                            {"accepted", accepted_particles(r)},
                             {"localisations", r.particles.table.size()},
                             {"planar", r.planar},
                             {"rounds", g.rounds},
@@ -203,7 +198,7 @@ Results compute(const RunConfig& config, const std::string& hash, Progress& prog
   r.planar = views.planar;
   r.provenance = {program_version(), run_config_text(config), config.registration.seed, hash,
                   library_versions()};
-  if (config.output.resolution == "halves" && accepted(r) > 0 && !progress.cancelled())
+  if (config.output.resolution == "halves" && accepted_particles(r) > 0 && !progress.cancelled())
     r.resolution = pipeline::resolve_halves(r.particles, config.registration, progress, engine);
   return r;
 }
@@ -242,7 +237,7 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   const Results r = compute(config, hash, progress, engine);
   if (progress.cancelled()) return {true, {}};
   for (const std::string& warning : r.registration.warnings) progress.note("warning: " + warning);
-  if (accepted(r) == 0) {
+  if (accepted_particles(r) == 0) {
     const auto reasons = rejections(r);
     throw smlm::Error(smlm::Fault::numerical, config.files.front(), "no particle could be registered",
                       reasons.empty() ? "" : "most were rejected because: " + reasons.front().second);

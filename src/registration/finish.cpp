@@ -26,7 +26,6 @@ constexpr double kMergeTolerance =
 constexpr double kHopeless = 0.02;     // merging farther will not come back from this loss
 constexpr double kLeastOfSites = 0.3;  // occupancy strength: few sites are missing by chance, not by a crop
 constexpr int kPolishRounds = 2, kPolishRoundsOfSites = 4;  // many free centres begin to fit noise
-constexpr int kFewestLocalisations = 4;
 constexpr double kMostOutliers = 0.8;
 constexpr double kMostRotationStd = 0.5236;  // 30 degrees: such a pose says nothing
 
@@ -188,7 +187,7 @@ void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& sta
     const double rotation_std = std::sqrt(std::max(0.0, v.covariance.topLeftCorner<3, 3>().trace()));
     v.reason.clear();
     if (v.n_used < kFewestLocalisations)
-      v.reason = "fewer than " + std::to_string(kFewestLocalisations) + " localisations";
+      v.reason = too_few_localisations();
     else if (v.outlier_fraction > kMostOutliers)
       v.reason = "the template explains too few of its localisations";
     else if (!(rotation_std < kMostRotationStd))

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "polar/core/constants.hpp"
 #include "polar/fusion/mixture.hpp"
 #include "polar_start.hpp"
 #include "template_tools.hpp"
@@ -12,8 +11,6 @@ namespace polar {
 
 namespace {
 
-constexpr double kOutlierRadius = 1.5;  // particle radii: the ball (disc) of the uniform class
-constexpr int kFewestLocalisations = 4;
 constexpr double kJudgedOutliers = 0.05;  // of the judging mixture where the latent options know of none
 
 // Decoded points as centres of equal weight, each as wide as the distance to its nearest neighbour: a surface
@@ -23,8 +20,7 @@ Mixture mixture_of(const LatentRegistration& latent, bool planar, double outlier
   m.centre = latent.template_points.cast<float>();
   m.weight = Eigen::VectorXf::Constant(m.size(), 1.0f / static_cast<float>(m.size()));
   m.outlier_fraction = std::max(kJudgedOutliers, outlier_fraction);
-  const double r = kOutlierRadius;
-  m.outlier_density = planar ? 1 / (kPi * r * r) : 3 / (4 * kPi * r * r * r);
+  m.outlier_density = outlier_density(planar);
   sort_into_blocks(m);
   return m;
 }
@@ -76,7 +72,7 @@ Registration latent_method(const Problem& problem, const RegistrationOptions& op
     v.visibility = p.visibility;
     v.n_used = p.n_used;
     v.accepted = p.n_used >= kFewestLocalisations;
-    v.reason = v.accepted ? "" : "fewer than " + std::to_string(kFewestLocalisations) + " localisations";
+    v.reason = v.accepted ? "" : too_few_localisations();
   }
   out.fused.centre = mixture.centre.cast<double>();
   out.fused.weight = mixture.weight.cast<double>();

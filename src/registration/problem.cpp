@@ -16,34 +16,39 @@ constexpr std::uint32_t kShuffleStage = 20, kThinningStage = 25;
 constexpr std::size_t kHeldOutShare = 5;  // one localisation in five judges
 }  // namespace
 
-Problem make_problem(const Views& views, std::uint64_t seed, bool thinned) {
-  const std::size_t views_n = views.view.size();
-  Problem problem{views, {}, {}, {}, {}, {}, seed, 0};
-  problem.axes.resize(views_n), problem.shuffled.resize(views_n);
-  problem.fitted.resize(views_n), problem.held_out.resize(views_n);
-  parallel_for(views_n, [&](std::size_t i) {
-    problem.axes[i] = uncertainty_axis(views.view[i], views.planar);
+Problems make_problems(const Views& views, std::uint64_t seed) {
+  const std::size_t n = views.view.size();
+  Problem plain{views, {}, {}, {}, {}, {}, seed, 0};
+  plain.axes.resize(n), plain.shuffled.resize(n), plain.fitted.resize(n), plain.held_out.resize(n);
+  Problem thinned = plain;
+  parallel_for(n, [&](std::size_t i) {
+    plain.axes[i] = uncertainty_axis(views.view[i], views.planar);
     const std::vector<double> weight = even_weights(views.view[i].points, kEvennessReach);
-    std::vector<std::uint32_t> order = sampling_order(weight, KeyedRandom(seed, i, kThinningStage));
-    const auto even = static_cast<std::size_t>(std::ceil(std::accumulate(weight.begin(), weight.end(), 0.0)));
-    std::vector<bool> judges(order.size(), false);
-    for (std::size_t j = kHeldOutShare - 1; j < std::min(even, order.size()); j += kHeldOutShare) {
-      problem.held_out[i].push_back(order[j]);
-      judges[order[j]] = true;
+    thinned.shuffled[i] = sampling_order(weight, KeyedRandom(seed, i, kThinningStage));
+    plain.shuffled[i] =
+        sampling_order(std::vector<double>(weight.size(), 1.0), KeyedRandom(seed, i, kShuffleStage));
+    std::vector<std::uint32_t> even = thinned.shuffled[i];
+    even.resize(std::min(even.size(), static_cast<std::size_t>(
+                                          std::ceil(std::accumulate(weight.begin(), weight.end(), 0.0)))));
+    std::vector<bool> judges(weight.size(), false);
+    for (std::size_t j = kHeldOutShare - 1; j < even.size(); j += kHeldOutShare) {
+      plain.held_out[i].push_back(even[j]);
+      judges[even[j]] = true;
     }
-    if (thinned)
-      problem.shuffled[i] = order, order.resize(std::min(even, order.size()));
-    else
-      problem.shuffled[i] = order =
-          sampling_order(std::vector<double>(order.size(), 1.0), KeyedRandom(seed, i, kShuffleStage));
-    std::copy_if(order.begin(), order.end(), std::back_inserter(problem.fitted[i]),
-                 [&](std::uint32_t j) { return !judges[j]; });
+    const auto fit = [&](const std::vector<std::uint32_t>& order, std::vector<std::uint32_t>& fitted) {
+      std::copy_if(order.begin(), order.end(), std::back_inserter(fitted),
+                   [&](std::uint32_t j) { return !judges[j]; });
+    };
+    fit(even, thinned.fitted[i]);
+    fit(plain.shuffled[i], plain.fitted[i]);
   });
-  for (std::size_t i = 0; i < views_n; ++i) {
-    problem.all.push_back(static_cast<int>(i));
-    problem.localisations += static_cast<double>(problem.shuffled[i].size());
+  for (std::size_t i = 0; i < n; ++i) {
+    plain.all.push_back(static_cast<int>(i));
+    plain.localisations += static_cast<double>(views.view[i].covariance.size());
   }
-  return problem;
+  thinned.axes = plain.axes, thinned.held_out = plain.held_out;
+  thinned.all = plain.all, thinned.localisations = plain.localisations;
+  return {std::move(thinned), std::move(plain)};
 }
 
 Subsets first_of(const Subsets& subsets, std::size_t most) {

@@ -24,16 +24,16 @@ struct Problem {
   std::size_t size() const { return views.view.size(); }
 };
 
-/// `thinned`: samples are even (evenness.hpp), what is too dense is left out of `fitted`. Localisations that
-/// are held out are the same, and even, either way.
-Problem make_problem(const Views& views, std::uint64_t seed, bool thinned);
-
 /// Both ways to see one set of views. Thinning takes away strands, and with them dense detail that tells one
 /// side of a structure from the other; a start believes in one of the two, and they compete.
 struct Problems {
   Problem thinned, plain;
   const Problem& of(bool crowded) const { return crowded ? thinned : plain; }
 };
+
+/// Samples of `thinned` are even (evenness.hpp), and what is too dense is left out of its `fitted`.
+/// Localisations that are held out are the same, and even, in both.
+Problems make_problems(const Views& views, std::uint64_t seed);
 
 /// The first `most` of every list.
 Subsets first_of(const Subsets& subsets, std::size_t most);

@@ -12,8 +12,6 @@ namespace polar {
 
 namespace {
 
-constexpr int kExhaustiveRotations = 50000;  // the paper's L
-constexpr int kExhaustivePlanar = 720;
 constexpr double kLargestFactor = 1.5;  // of a, either way, before a warning
 
 class Stopwatch {
@@ -44,12 +42,11 @@ void warn_about_calibration(const Calibration& c, std::vector<std::string>& warn
 // Everything a run carries from stage to stage.
 struct Run {
   Run(const Views& views, const RegistrationOptions& options, Progress& p)
-      : problems{make_problem(views, options.seed, true), make_problem(views, options.seed, false)},
-        progress(p) {
+      : problems(make_problems(views, options.seed)), progress(p) {
     out.view.resize(views.view.size());
     if (options.search == "exhaustive") {
       rounds.rotations = kExhaustiveRotations;
-      rounds.planar_rotations = kExhaustivePlanar;
+      rounds.planar_rotations = kExhaustivePlanarRotations;
     }
     grid = search_grid(views.planar ? rounds.planar_rotations : rounds.rotations, views.planar);
     timed("grid");
@@ -122,7 +119,7 @@ bool needs_weights(const RegistrationOptions& options) {
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {
   if (options.method == "latent") {
     Stopwatch watch;
-    Registration out = latent_method(make_problem(views, options.seed, false), options, progress);
+    Registration out = latent_method(make_problems(views, options.seed).plain, options, progress);
     out.timings.push_back({"latent", watch.lap()});
     return out;
   }

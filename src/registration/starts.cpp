@@ -29,9 +29,8 @@ int random_starts(const StartContext& context, const AnnealingOptions& options) 
   return std::clamp(static_cast<int>(kLookUpBudget / std::max(1.0, look_ups)), kFewestRandom, kMostRandom);
 }
 
-std::vector<Hypothesis> short_runs(const Problems& problems, const RegistrationOptions& wishes,
-                                   Progress& progress) {
-  const StartContext thinned = start_context(problems.thinned), plain = start_context(problems.plain);
+std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartContext& plain,
+                                   const RegistrationOptions& wishes, Progress& progress) {
   const AnnealingOptions options;
   const auto wanted = [&](const char* name) {
     return std::find(wishes.starts.begin(), wishes.starts.end(), name) != wishes.starts.end();
@@ -61,12 +60,11 @@ std::vector<Hypothesis> short_runs(const Problems& problems, const RegistrationO
   return hypotheses;
 }
 
-RoundState state_of(const Problem& problem, const Hypothesis& h) {
-  const StartContext context = start_context(problem);
+RoundState state_of(const StartContext& context, const Hypothesis& h) {
   RoundState state;
   state.mixture = h.mixture;
   state.crowded = h.crowded;
-  state.pose.resize(problem.size());
+  state.pose.resize(context.problem.size());
   for (std::size_t k = 0; k < context.which.size(); ++k)
     state.pose[static_cast<std::size_t>(context.which[k])] = h.pose[k];
   return state;
@@ -76,7 +74,8 @@ RoundState state_of(const Problem& problem, const Hypothesis& h) {
 
 StartsOutcome compete(const Problems& problems, const RegistrationOptions& options, const SearchGrid& grid,
                       const RoundOptions& rounds, Progress& progress) {
-  std::vector<Hypothesis> hypotheses = short_runs(problems, options, progress);
+  const StartContext thinned = start_context(problems.thinned), plain = start_context(problems.plain);
+  std::vector<Hypothesis> hypotheses = short_runs(thinned, plain, options, progress);
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
   StartsOutcome out;
@@ -89,7 +88,7 @@ StartsOutcome compete(const Problems& problems, const RegistrationOptions& optio
   std::size_t best = 0;
   for (std::size_t k = 0; k < finalists && !progress.cancelled(); ++k) {
     const Problem& problem = problems.of(hypotheses[k].crowded);
-    RoundState state = state_of(problem, hypotheses[k]);
+    RoundState state = state_of(hypotheses[k].crowded ? thinned : plain, hypotheses[k]);
     run_rounds(problem, grid, rounds, progress, state);
     out.report[k].final_held_out_log_likelihood = state.held_out;
     if (k > 0 &&

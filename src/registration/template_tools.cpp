@@ -13,6 +13,15 @@ constexpr std::uint32_t kFirstCentreStage = 22;
 constexpr double kOutlierRadius = 1.5;  // particle radii: the ball (disc) of the uniform class
 }  // namespace
 
+std::string too_few_localisations() {
+  return "fewer than " + std::to_string(kFewestLocalisations) + " localisations";
+}
+
+double outlier_density(bool planar) {
+  const double r = kOutlierRadius;
+  return planar ? 1 / (kPi * r * r) : 3 / (4 * kPi * r * r * r);
+}
+
 double first_outlier_fraction(bool crowded) { return crowded ? 0.4 : 0.05; }
 
 MaximisationOptions fusion_options(bool crowded, double width) {
@@ -27,8 +36,7 @@ Mixture scattered_mixture(const Problem& problem, const Subsets& subsets, const 
   Mixture m;
   m.centre = Eigen::Matrix3Xf::Zero(3, centres);
   m.weight = Eigen::VectorXf::Constant(centres, 1.0f / static_cast<float>(centres));
-  const double r = kOutlierRadius;
-  m.outlier_density = problem.planar() ? 1 / (kPi * r * r) : 3 / (4 * kPi * r * r * r);
+  m.outlier_density = outlier_density(problem.planar());
   KeyedRandom random(problem.seed, key, kFirstCentreStage);
   for (int k = 0; k < centres; ++k) {
     const std::size_t v = random.below(which.size());

@@ -2,6 +2,7 @@
 // localisations.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "polar/core/pose.hpp"
@@ -10,6 +11,13 @@
 #include "problem.hpp"
 
 namespace polar {
+
+/// Fewer localisations say nothing about a pose.
+constexpr int kFewestLocalisations = 4;
+std::string too_few_localisations();
+
+/// Of the uniform outlier class: over a ball (planar: a disc) half again as large as a particle.
+double outlier_density(bool planar);
 
 /// Two temperaments. Crowded: outliers such as strands are expected, so centres begin on what views share and
 /// weak ones are sown anew; else every centre is given time, which sparse particles need.

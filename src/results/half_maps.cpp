@@ -108,11 +108,6 @@ Volume drawn_inside(const Table& table, Volume grid, RenderOptions options) {
   }
   return render_into(std::move(grid), inside, options);
 }
-
-std::size_t accepted(const Results& r) {
-  return static_cast<std::size_t>(std::count_if(r.registration.view.begin(), r.registration.view.end(),
-                                                [](const RegisteredView& v) { return v.accepted; }));
-}
 }  // namespace
 
 bool ResolutionReport::supported() const {
@@ -122,7 +117,7 @@ bool ResolutionReport::supported() const {
 
 HalfMaps compare_half_maps(const Results& first, const Results& second, std::uint64_t seed) {
   HalfMaps out;
-  out.first_particles = accepted(first), out.second_particles = accepted(second);
+  out.first_particles = accepted_particles(first), out.second_particles = accepted_particles(second);
   if (out.first_particles == 0 || out.second_particles == 0) return out;
   out.first_from_second_nm = align_maps(first, second, seed);
   const Table a = superparticle(first), b = moved(superparticle(second), out.first_from_second_nm);

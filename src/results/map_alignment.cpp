@@ -1,7 +1,6 @@
 // Two maps onto one another: the second superparticle is one big view of the first one's template.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "polar/core/rng.hpp"
 #include "polar/fusion/search_again.hpp"
@@ -61,14 +60,6 @@ NoiseModel isotropic_noise(const Registration& r, bool planar) {
   noise.planar = planar;
   return noise;
 }
-
-std::vector<std::uint32_t> shuffled(std::size_t n, std::uint64_t seed) {
-  std::vector<std::uint32_t> order(n);
-  std::iota(order.begin(), order.end(), 0u);
-  KeyedRandom random(seed, 0, kOrderStage);
-  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
-  return order;
-}
 }  // namespace
 
 Pose align_maps(const Results& first, const Results& second, std::uint64_t seed) {
@@ -79,7 +70,8 @@ Pose align_maps(const Results& first, const Results& second, std::uint64_t seed)
   views.planar = planar;
   views.view = {map_view(superparticle(second), scale_nm, mean_nm)};
   const std::vector<Eigen::Vector3f> axes = {Eigen::Vector3f::UnitZ()};
-  Subsets subset = {shuffled(static_cast<std::size_t>(views.view[0].points.cols()), seed)};
+  Subsets subset = {
+      random_order(static_cast<std::size_t>(views.view[0].points.cols()), KeyedRandom(seed, 0, kOrderStage))};
   const Mixture mixture = mixture_of(first.registration.fused);
   const NoiseModel noise = isotropic_noise(first.registration, planar);
 

@@ -1,10 +1,17 @@
 #include "polar/results/results.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "polar/core/constants.hpp"
 
 namespace polar {
+
+std::size_t accepted_particles(const Results& results) {
+  return static_cast<std::size_t>(std::count_if(results.registration.view.begin(),
+                                                results.registration.view.end(),
+                                                [](const RegisteredView& v) { return v.accepted; }));
+}
 
 smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c) {
   Eigen::Matrix3d m;

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace polar {
 
@@ -40,5 +41,8 @@ class KeyedRandom {
   bool has_spare_ = false;
   double spare_ = 0;
 };
+
+/// The numbers 0 ... n - 1 in random order.
+std::vector<std::uint32_t> random_order(std::size_t n, KeyedRandom random);
 
 }  // namespace polar

@@ -6,19 +6,10 @@
 #include <vector>
 
 #include "polar/core/pose.hpp"
-#include "polar/flames/neighbour_graph.hpp"
+#include "polar/flames/search_grid.hpp"
 #include "polar/fusion/direction_volumes.hpp"
 
 namespace polar {
-
-struct SearchGrid {
-  std::vector<Eigen::Matrix3f> rotation;  // template_from_view
-  NeighbourGraph graph;
-};
-
-/// Grid of about `rotations` rotations with the neighbourhood that reaches as far as 256 of 50,000 do;
-/// planar: rotations about z. Large graphs are kept in the cache directory.
-SearchGrid search_grid(int rotations, bool planar);
 
 struct SearchOptions {
   std::vector<Eigen::Vector3f> translation = {Eigen::Vector3f::Zero()};  // tried with every rotation

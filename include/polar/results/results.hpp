@@ -36,6 +36,9 @@ struct Results {
   std::optional<ResolutionReport> resolution;  // where output.resolution asks for it
 };
 
+/// How many particles have a pose that may be used.
+std::size_t accepted_particles(const Results& results);
+
 /// R C R^T of a stored covariance.
 smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c);
 

@@ -1,7 +1,9 @@
 #include "polar/core/rng.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace polar {
@@ -64,6 +66,18 @@ TEST(KeyedRandom, belowCoversItsRangeEvenly) {
   std::array<int, 7> seen{};
   for (int i = 0; i < 7000; ++i) ++seen[random.below(7)];
   for (const int n : seen) EXPECT_NEAR(n, 1000, 5 * std::sqrt(1000.0));
+}
+
+TEST(RandomOrder, everyNumberOnceAndEveryPlaceEquallyOften) {
+  constexpr std::size_t kNumbers = 5, kDraws = 20000;
+  std::array<std::array<double, kNumbers>, kNumbers> share{};
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    const auto order = random_order(kNumbers, KeyedRandom(11, draw, 2));
+    ASSERT_THAT(order, testing::UnorderedElementsAre(0, 1, 2, 3, 4));
+    for (std::size_t place = 0; place < kNumbers; ++place) share[place][order[place]] += 1.0 / kDraws;
+  }
+  for (const auto& place : share)
+    for (double s : place) EXPECT_NEAR(s, .2, 5 * std::sqrt(.2 * .8 / kDraws));
 }
 
 }  // namespace

@@ -1,0 +1,23 @@
+// What FLAMES searches, over whatever cost: a rotation grid with its neighbourhoods.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "polar/flames/neighbour_graph.hpp"
+
+namespace polar {
+
+/// The paper's L, and as many turns about z for planar data.
+constexpr int kExhaustiveRotations = 50000, kExhaustivePlanarRotations = 720;
+
+struct SearchGrid {
+  std::vector<Eigen::Matrix3f> rotation;
+  NeighbourGraph graph;
+};
+
+/// Grid of about `rotations` rotations with the neighbourhood that reaches as far as 256 of 50,000 do;
+/// planar: rotations about z. Large graphs are kept in the cache directory.
+SearchGrid search_grid(int rotations, bool planar);
+
+}  // namespace polar

@@ -1,0 +1,29 @@
+#include "polar/flames/search_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "polar/flames/rotation_grid.hpp"
+
+namespace polar {
+
+namespace {
+constexpr double kNeighbourShare = 256.0 / kExhaustiveRotations;  // the paper's k of its L
+constexpr int kFewestNeighbours = 10;
+constexpr int kPlanarNeighbours = 12;
+constexpr int kWorthCaching = 4000;  // rotations; smaller graphs are built in no time
+}  // namespace
+
+SearchGrid search_grid(int rotations, bool planar) {
+  const std::vector<Eigen::Quaternionf> q = planar ? planar_rotations(rotations) : super_fibonacci(rotations);
+  const int k = planar
+                    ? kPlanarNeighbours
+                    : std::max(kFewestNeighbours, static_cast<int>(std::lround(kNeighbourShare * rotations)));
+  SearchGrid grid;
+  grid.graph =
+      rotations >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory()) : neighbour_graph(q, k);
+  for (const Eigen::Quaternionf& r : q) grid.rotation.push_back(r.toRotationMatrix());
+  return grid;
+}
+
+}  // namespace polar
