@@ -32,7 +32,7 @@ TEST(ShippedWeights, restoreProceduralStructures) {
     const TrainingCloud cloud = training_cloud(12345, item, {}, {}, {});
     sum += chamfer(model->decode(model->encode(cloud.input).latent), cloud.target).sum() / kClouds;
   }
-  // The card's training loss is 0.124 on procedural and file shapes together; a wrong layer gives 0.4 and more.
+  // The card's training loss is 0.118 on procedural and file shapes together; a wrong layer gives 0.4 and more.
   EXPECT_LT(sum, 0.17);
   EXPECT_GT(sum, 0.05);
 }
@@ -41,7 +41,7 @@ TEST(ShippedWeights, reachTheScoresOfTheCard) {
   if (!std::filesystem::exists(kDevShapes)) GTEST_SKIP() << "development data is absent";
   const auto model = make_pointnet(read_weights(kFolder + "polar_autoencoder_1.h5").weights);
   const ShapeSet shapes = read_shapes({kDevShapes}, 1024);
-  const double expected[] = {0.0930, 0.0951, 0.0977, 0.0932};
+  const double expected[] = {0.0882, 0.0903, 0.0931, 0.0886};
   const auto conditions = standard_conditions();
   ASSERT_EQ(conditions.size(), 4u);
   // The same draws: what remains is the rounding of the last digit and of another instruction set.
