@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "smlm/inspect.hpp"
@@ -41,11 +42,12 @@ std::string to_text(const Inspection& in) {
     text += "and " + std::to_string(in.files.size() - most_files) + " more files\n";
   text += std::to_string(in.localisations) + " localisations" + (in.planar ? ", planar" : "");
   if (in.particles > 0) {
+    const double radius_nm = in.particle_radius_nm.median;  // none where every particle is one localisation
+    const std::string radius = std::isnan(radius_nm) ? "" : ", median radius " + number(radius_nm) + " nm";
     text += ", " + std::to_string(in.particles) + " particles of " +
             number(in.localisations_per_particle.minimum) + " to " +
             number(in.localisations_per_particle.maximum) + " (median " +
-            number(in.localisations_per_particle.median) + ") localisations, median radius " +
-            number(in.particle_radius_nm.median) + " nm";
+            number(in.localisations_per_particle.median) + ") localisations" + radius;
   } else {
     text += ", no particles";
   }

@@ -31,12 +31,13 @@ void Reporter::step(const std::string& stage, int done, int total) {
   if (stage != stage_) {
     stage_ = stage;
     stage_start_ = now;
+    stage_first_ = done;  // work that goes on from a checkpoint does not begin at 0
     last_shown_ = {};
   }
   if (now - last_shown_ < kRefresh && done < total) return;
   last_shown_ = now;
   const double elapsed = seconds(now - stage_start_);
-  const double rate = elapsed > 0 ? done / elapsed : 0;
+  const double rate = elapsed > 0 ? (done - stage_first_) / elapsed : 0;
   const double left = rate > 0 ? (total - done) / rate : 0;
   if (style_ == ReportStyle::json)
     print_json({{"event", "progress"},

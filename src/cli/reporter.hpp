@@ -29,6 +29,7 @@ class Reporter : public Progress {
   ReportStyle style_;
   std::string stage_;
   Clock::time_point stage_start_{}, last_shown_{};
+  int stage_first_ = 0;  // steps done when the stage was first heard of
   bool line_shown_ = false;
 };
 

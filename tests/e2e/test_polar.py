@@ -129,6 +129,19 @@ class Outputs(PolarCase):
         lines = [json.loads(line) for line in done.stderr.splitlines()]
         self.assertTrue(any(line["event"] == "progress" and line["done"] <= line["total"] for line in lines))
 
+    def test_the_rate_of_a_resumed_training_is_that_of_its_own_steps(self):
+        config = self.write("train.yaml", "training: {clouds_per_step: 2}\n"
+                            "output: {weights: w.h5, checkpoint: c.h5}\n")
+        self.ok("train", config, "--quiet", "--set", "training.steps=60")
+        done = self.polar("train", config, "--json-log", "--set", "training.steps=80")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = [json.loads(line) for line in done.stderr.splitlines()]
+        steps = [line for line in lines if line["event"] == "progress"]
+        first, last = steps[0], steps[-1]
+        self.assertEqual((first["done"], last["done"]), (61, 80))
+        measured = (last["done"] - first["done"]) / (last["time_s"] - first["time_s"])
+        self.assertLess(abs(last["rate_per_s"] / measured - 1), .2)
+
 
 class FullDisk(PolarCase):
     FORMATS = ("vtkhdf", "csv", "png", "tiff", "ply", "picasso", "thunderstorm")

@@ -51,6 +51,11 @@ TEST_F(Inspect, NumbersOfATable) {
   EXPECT_THAT(text, HasSubstr("x <- 'x_nm'"));
 }
 
+TEST_F(Inspect, ParticlesOfOneLocalisationHaveNoRadius) {
+  const std::string text = to_text(inspect(read("particle,x_nm,y_nm\n1,0,0\n2,5,5\n")));
+  EXPECT_THAT(text, HasSubstr("2 particles of 1 to 1 (median 1) localisations\n"));
+}
+
 TEST_F(Inspect, NamesThatAreNotUtf8DoNotBreakJson) {
   const Inspection in = inspect(read("x_nm,y_nm,\xFFname\n1,2,3\n"));
   EXPECT_TRUE(nlohmann::json::parse(to_json(in), nullptr, false).is_object());
