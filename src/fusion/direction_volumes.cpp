@@ -12,7 +12,6 @@ namespace polar {
 
 namespace {
 
-constexpr float kGoldenAngle = 2.39996322972865f;
 constexpr float kVoxelPerSigma =
     0.8f;  // voxel over the sharpest standard deviation: nearest look-up errs by .23 of it
 constexpr int kLargestDim = 56;          // 56^3 16-bit values fit a second-level cache
@@ -104,10 +103,10 @@ int directions_for(const SigmaClasses& classes, bool planar) {
 }
 
 DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions,
-                                   bool planar) {
+                                   bool planar, const BackgroundFactor& background_factor) {
   for (int i = 0; i < directions; ++i) {  // spiral on the upper hemisphere: e and -e blur alike
     const float z = 1 - (static_cast<float>(i) + 0.5f) / static_cast<float>(directions);
-    const float r = std::sqrt(1 - z * z), phi = kGoldenAngle * static_cast<float>(i);
+    const float r = std::sqrt(1 - z * z), phi = kGoldenAngleF * static_cast<float>(i);
     direction_.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
   }
   float sharpest = INFINITY;
@@ -131,6 +130,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
   const float highest = kTwoPiF * sharpest * sharpest * (planar ? 1 : std::sqrt(kTwoPiF) * sharpest);
   scale_ = 32000.0f / std::max(1.0f, std::log(1.0f / highest + background) - zero_);
 
+  const std::vector<float> empty = empty_volume(background, background_factor);
   const auto inlier = static_cast<float>(1 - mixture.outlier_fraction);
   parallel_for(direction_.size() * classes.sigma.size(), [&](std::size_t v) {
     const AxialSigma sigma = classes.sigma[v / direction_.size()];
@@ -147,7 +147,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
     const Eigen::Vector3f reach = kReach * c.diagonal().cwiseSqrt() / voxel_;
     // Rows along x: q(i) = a + b i + c i^2 with i in voxels from the volume's edge.
     const float cxx = p(0, 0) * voxel_ * voxel_;
-    std::vector<float> density(stride_, background);
+    std::vector<float> density = empty;
     for (Eigen::Index k = 0; k < mixture.size(); ++k) {
       const Eigen::Vector3f at = (mixture.centre.col(k) - origin_) / voxel_;
       const float amplitude = inlier * mixture.weight[k] * norm;
@@ -173,6 +173,17 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
     mixture_kernel().quantise_log(density.data(), static_cast<int>(stride_), zero_, scale_,
                                   value_.data() + v * stride_);
   });
+}
+
+std::vector<float> DirectionVolumes::empty_volume(float density, const BackgroundFactor& factor) const {
+  std::vector<float> out(stride_, density);
+  if (!factor) return out;
+  float* at = out.data();
+  for (int z = 0; z < dim_[2]; ++z)
+    for (int y = 0; y < dim_[1]; ++y)
+      for (int x = 0; x < dim_[0]; ++x)
+        *at++ *= factor(origin_ + voxel_ * Eigen::Vector3i(x, y, z).cast<float>());
+  return out;
 }
 
 const std::int16_t* DirectionVolumes::volume(int sigma_class, int direction) const {

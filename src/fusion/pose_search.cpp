@@ -1,6 +1,7 @@
 #include "polar/fusion/pose_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "polar/flames/local_minima.hpp"
@@ -34,8 +35,20 @@ std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar) {
   return out;
 }
 
+std::vector<Eigen::Vector3f> lattice_shifts(double reach, double spacing, bool planar) {
+  std::vector<Eigen::Vector3f> out;
+  const int n = static_cast<int>(std::ceil(reach / spacing));
+  for (int x = -n; x <= n; ++x)
+    for (int y = -n; y <= n; ++y)
+      for (int z = planar ? 0 : -n; z <= (planar ? 0 : n); ++z) {
+        const Eigen::Vector3f shift = static_cast<float>(spacing) * Eigen::Vector3i(x, y, z).cast<float>();
+        if (shift.norm() <= static_cast<float>(reach)) out.push_back(shift);
+      }
+  return out;
+}
+
 GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, const SearchGrid& grid,
-                      const Eigen::Matrix3f& turn, const SearchOptions& options) {
+                      const Eigen::Matrix3f& turn, const SearchOptions& options, const SearchView* closer) {
   const std::size_t n = grid.rotation.size();
   GridScores out;
   out.log_likelihood.resize(n);
@@ -66,9 +79,13 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
                                   sb = out.log_likelihood[static_cast<std::size_t>(b)];
                       return sa > sb || (sa == sb && a < b);
                     });
+  if (closer != nullptr) std::fill(out.log_likelihood.begin(), out.log_likelihood.end(), -INFINITY);
   for (std::size_t k = 0; k < few; ++k) {
     const auto i = static_cast<std::size_t>(order[k]);
-    climb(volumes, view, turned[i], options.step, out.translation[i], out.log_likelihood[i]);
+    float& best = out.log_likelihood[i];
+    if (closer != nullptr)
+      best = volumes.score(*closer, volumes.direction_of(*closer, turned[i]), turned[i], out.translation[i]);
+    climb(volumes, closer != nullptr ? *closer : view, turned[i], options.step, out.translation[i], best);
   }
   return out;
 }
@@ -81,6 +98,7 @@ std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, cons
   std::vector<Basin> out;
   for (const int i : local_minima(cost, grid.graph, most)) {
     const auto k = static_cast<std::size_t>(i);
+    if (!std::isfinite(scores.log_likelihood[k])) continue;
     out.push_back({{(grid.rotation[k] * turn).cast<double>(), scores.translation[k].cast<double>()},
                    scores.log_likelihood[k]});
   }

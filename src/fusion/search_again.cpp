@@ -56,8 +56,16 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
       few.resize(static_cast<std::size_t>(options.most_localisations));
     outcome[i].pose = poses[i];
     if (few.empty()) return;
-    const GridScores scores = score_grid(volumes, search_view(views.view[i], axes[i], noise, classes, few),
-                                         grid, turn, options.grid);
+    const auto seen = [&](const std::vector<std::uint32_t>& which) {
+      return search_view(views.view[i], axes[i], noise, classes, which);
+    };
+    const SearchView all = seen(few);
+    const auto coarse = static_cast<std::size_t>(options.coarse_localisations);
+    const bool in_two_steps = coarse > 0 && coarse < few.size();
+    const GridScores scores =
+        in_two_steps ? score_grid(volumes, seen({few.begin(), few.begin() + options.coarse_localisations}),
+                                  grid, turn, options.grid, &all)
+                     : score_grid(volumes, all, grid, turn, options.grid);
     const KernelLocalisations localisations = kernel_localisations(views.view[i], axes[i], noise, few);
     ViewFrame frame(blocked);
     const auto refined = [&](const Pose& start) {

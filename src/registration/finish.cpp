@@ -135,6 +135,10 @@ NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noi
   return noise;
 }
 
+double held_out_score_of_parts(const Problem& problem, const NoiseModel& noise, RoundState state) {
+  return choose_occupancy(problem, jury(problem), noise, state);
+}
+
 NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state) {
   const Jury few = jury(problem);
   double best_score = choose_occupancy(problem, few, noise, state);

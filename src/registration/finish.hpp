@@ -11,6 +11,10 @@ namespace polar {
 /// model.
 NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noise, RoundState& state);
 
+/// Mean log density per held-out localisation, each view weighing the centres in its own way where that
+/// explains them better: what starts are compared by where views may show parts of the structure.
+double held_out_score_of_parts(const Problem& problem, const NoiseModel& noise, RoundState state);
+
 /// Fewer centres where held-out localisations are explained as well: a few sites instead of a surface.
 NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state);
 

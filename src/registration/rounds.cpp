@@ -58,6 +58,11 @@ void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptio
   search.grid.translation = axis_shifts(options.shift, problem.planar());
   search.grid.promising = options.promising;
   search.grid.step = options.step;
+  if (state.parts && state.rounds == 0) {
+    search.grid.translation = lattice_shifts(options.parts_reach, options.parts_spacing, problem.planar());
+    search.grid.step = static_cast<float>(options.parts_spacing / 2);
+    search.coarse_localisations = options.parts_coarse;
+  }
   KeyedRandom turns(problem.seed, static_cast<std::uint64_t>(state.rounds), kTurnStage);
   const Eigen::Matrix3f turn = problem.planar() ? Eigen::Matrix3f(Eigen::Matrix3f::Identity())
                                                 : Eigen::Matrix3f(turns.rotation().cast<float>());

@@ -19,6 +19,8 @@ struct RoundOptions {
   double first_width = 0.09, last_width = 0.03, narrowing = 0.72;
   double search_width = 0.05;  // the search looks at the template no sharper than this
   float shift = 0.10f, step = 0.06f;
+  double parts_reach = 1.2, parts_spacing = 0.2;  // of the shifts where views show parts of the structure
+  int parts_coarse = 32;                          // localisations looked at for every one of them
   int promising = 200;
   int sweeps = 4;  // of EM and pose steps after each search
   int most_searches = 4;
@@ -36,7 +38,8 @@ struct RoundState {
   double width = 0;          // of the template after the last round kept
   double held_out = -1e300;  // mean log density of the held-out localisations at that width
   int rounds = 0;
-  int escaped = 0;  // in the last search
+  int escaped = 0;     // in the last search
+  bool parts = false;  // views show parts of the structure: the first search shifts them far
 };
 
 /// Number of centres for so many localisations: enough for a surface, few enough to be determined.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "assembly.hpp"
+#include "finish.hpp"
 #include "polar_start.hpp"
 
 namespace polar {
@@ -29,15 +31,16 @@ int random_starts(const StartContext& context, const AnnealingOptions& options) 
   return std::clamp(static_cast<int>(kLookUpBudget / std::max(1.0, look_ups)), kFewestRandom, kMostRandom);
 }
 
+bool wants(const RegistrationOptions& options, const char* start) {
+  return std::find(options.starts.begin(), options.starts.end(), start) != options.starts.end();
+}
+
 std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartContext& plain,
                                    const RegistrationOptions& wishes, Progress& progress) {
   const AnnealingOptions options;
-  const auto wanted = [&](const char* name) {
-    return std::find(wishes.starts.begin(), wishes.starts.end(), name) != wishes.starts.end();
-  };
-  const int random = wanted("random") ? random_starts(plain, options) : 0;
-  const bool polar = wanted("polar");
-  const int total = random + (polar ? 1 : 0) + (wanted("imaged") ? 1 : 0);
+  const int random = wants(wishes, "random") ? random_starts(plain, options) : 0;
+  const bool polar = wants(wishes, "polar");
+  const int total = random + (polar ? 1 : 0) + (wants(wishes, "imaged") ? 1 : 0);
   std::vector<Hypothesis> hypotheses;
   for (int k = 0; k < total && !progress.cancelled(); ++k) {
     if (k < random) {
@@ -58,6 +61,35 @@ std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartConte
     progress.step("starts", k + 1, total);
   }
   return hypotheses;
+}
+
+double score_of_parts(const Problem& problem, const RoundState& state) {
+  NoiseModel noise;
+  noise.planar = problem.planar();
+  noise.width = state.width;
+  return held_out_score_of_parts(problem, noise, state);
+}
+
+// Pairs of views have the last word: where they contradict the winner, or there is none, what they say is
+// registered too. Both are then judged as parts.
+void challenge(const Problems& problems, const SearchGrid& grid, const RoundOptions& rounds,
+               Progress& progress, StartsOutcome& out) {
+  const Problem& problem = problems.thinned;
+  const Assembly assembly(problem);
+  if (out.finished && !assembly.contradicts(out.winner.pose)) return;
+  progress.step("pairs of views", 0, 1);
+  RoundState state = assembly.assembled(rounds);
+  run_rounds(problem, grid, rounds, progress, state);
+  if (progress.cancelled()) return;
+  StartReport report{"assembled", score_of_parts(problem, state), state.held_out, false};
+  if (!out.finished ||
+      report.held_out_log_likelihood > score_of_parts(problems.of(out.winner.crowded), out.winner)) {
+    for (StartReport& other : out.report) other.won = false;
+    report.won = true;
+    out.winner = std::move(state);
+    out.finished = true;
+  }
+  out.report.push_back(report);
 }
 
 RoundState state_of(const StartContext& context, const Hypothesis& h) {
@@ -99,6 +131,7 @@ StartsOutcome compete(const Problems& problems, const RegistrationOptions& optio
     out.finished = true;
   }
   if (out.finished) out.report[best].won = true;
+  if (wants(options, "assembled") && !progress.cancelled()) challenge(problems, grid, rounds, progress, out);
   return out;
 }
 

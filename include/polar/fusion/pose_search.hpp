@@ -22,8 +22,11 @@ struct GridScores {
   std::vector<float> log_likelihood;
   std::vector<Eigen::Vector3f> translation;
 };
+/// `closer`: more localisations of the same view; the promising rotations are then scored by those, and the
+/// others score minus infinity.
 GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, const SearchGrid& grid,
-                      const Eigen::Matrix3f& turn, const SearchOptions& options);
+                      const Eigen::Matrix3f& turn, const SearchOptions& options,
+                      const SearchView* closer = nullptr);
 
 struct Basin {
   Pose template_from_view;
@@ -36,5 +39,8 @@ std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, cons
 
 /// 0 and +-shift along the axes (7), planar without z (5).
 std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar);
+
+/// A cubic lattice within a ball of radius `reach`; planar: a square one within a disc.
+std::vector<Eigen::Vector3f> lattice_shifts(double reach, double spacing, bool planar);
 
 }  // namespace polar

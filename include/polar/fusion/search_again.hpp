@@ -17,6 +17,7 @@ struct SearchAgainOptions {
   int basins = 8;                // M of the paper
   int evaluations = 8;           // of the refinement of a basin
   int most_localisations = 160;  // of a view that the search looks at
+  int coarse_localisations = 0;  // looked at before the promising rotations are known; 0: all of the above
   int sigma_classes = 3;
   double escape_rad = 0.2617993877991494;  // T_R = 15 degrees
   double escape_gain = 2;  // log likelihood that a move must gain to count: less is a symmetric twin or a tie

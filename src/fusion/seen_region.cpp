@@ -1,0 +1,55 @@
+#include "polar/fusion/seen_region.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "polar/core/constants.hpp"
+
+namespace polar {
+
+namespace {
+constexpr int kDirections = 96;
+constexpr double kCounted = 0.985;  // share of the points along a direction
+constexpr float kMargin = 0.01f;    // of the extent along the direction: the noise of an edge
+
+// A spiral over the whole sphere.
+std::vector<Eigen::Vector3f> spread_directions() {
+  std::vector<Eigen::Vector3f> out;
+  for (int i = 0; i < kDirections; ++i) {
+    const float z = 1 - 2 * (static_cast<float>(i) + 0.5f) / static_cast<float>(kDirections);
+    const float r = std::sqrt(1 - z * z), phi = kGoldenAngleF * static_cast<float>(i);
+    out.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
+  }
+  return out;
+}
+
+const std::vector<Eigen::Vector3f>& directions() {
+  static const std::vector<Eigen::Vector3f> all = spread_directions();
+  return all;
+}
+}  // namespace
+
+SeenRegion::SeenRegion(const Eigen::Matrix3Xf& points) {
+  if (points.cols() == 0) return;
+  std::vector<float> along(static_cast<std::size_t>(points.cols()));
+  const auto quantile = [&](double share) {
+    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(along.size() - 1));
+    std::nth_element(along.begin(), along.begin() + at, along.end());
+    return along[static_cast<std::size_t>(at)];
+  };
+  for (const Eigen::Vector3f& d : directions()) {
+    Eigen::Map<Eigen::RowVectorXf>(along.data(), points.cols()) = d.transpose() * points;
+    const float near = quantile(1 - kCounted), far = quantile(kCounted);
+    farthest_.push_back(far - kMargin * (far - near));
+  }
+}
+
+bool SeenRegion::contains(const Eigen::Vector3f& x) const {
+  if (farthest_.empty()) return false;
+  for (int d = 0; d < kDirections; ++d)
+    if (directions()[static_cast<std::size_t>(d)].dot(x) > farthest_[static_cast<std::size_t>(d)])
+      return false;
+  return true;
+}
+
+}  // namespace polar

@@ -1,0 +1,120 @@
+#include "assembly.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "polar/core/rng.hpp"
+#include "polar/fusion/maximisation.hpp"
+#include "template_tools.hpp"
+
+namespace polar {
+
+namespace {
+
+constexpr std::uint32_t kPairTurnStage = 27;
+constexpr std::size_t kMostViews = 50;   // pairs grow with the square of it
+constexpr std::size_t kProbes = 2;       // views whose matches the winner is held against
+constexpr std::size_t kProbedWith = 24;  // views each
+constexpr std::size_t kSurest = 12;      // matches each that are believed
+constexpr double kFewestEvidence = 1.5;  // of a match that says anything
+constexpr double kContradiction = 0.5;   // evidence that the winner's alignment must lack
+constexpr double kTolerated = 0.1;       // share of contradicted matches: pairs err too
+constexpr double kWidths[] = {0.15, 0.15, 0.12, 0.12, 0.09, 0.09};  // of the sweeps that relax an assembly
+constexpr std::size_t kRelaxedLocalisations = 200;                  // of a view
+
+std::vector<int> some_of(const std::vector<int>& all) {
+  if (all.size() <= kMostViews) return all;
+  std::vector<int> few;  // evenly through the set: neighbours may share a field of view
+  for (std::size_t k = 0; k < kMostViews; ++k) few.push_back(all[k * all.size() / kMostViews]);
+  return few;
+}
+
+Eigen::Matrix3f turn_of(const Problem& problem, std::size_t view) {
+  if (problem.planar()) return Eigen::Matrix3f::Identity();
+  return KeyedRandom(problem.seed, view, kPairTurnStage).rotation().cast<float>();
+}
+
+}  // namespace
+
+std::vector<Pose> spanning_poses(std::size_t views, std::vector<Joint> joints) {
+  std::stable_sort(joints.begin(), joints.end(),
+                   [](const Joint& a, const Joint& b) { return a.match.evidence > b.match.evidence; });
+  std::vector<Pose> pose(views);  // group_from_view
+  std::vector<std::size_t> group(views);
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  for (const Joint& j : joints) {  // J. B. Kruskal, Proceedings of the AMS 7, 1956
+    const std::size_t stays = group[j.first], moves = group[j.second];
+    if (stays == moves) continue;
+    const Pose stays_from_moves = pose[j.first] * j.match.first_from_second * pose[j.second].inverse();
+    for (std::size_t i = 0; i < views; ++i)
+      if (group[i] == moves) pose[i] = stays_from_moves * pose[i], group[i] = stays;
+  }
+  const Pose rest = views > 0 ? pose[0].inverse() : Pose{};
+  for (std::size_t i = 0; i < views; ++i) pose[i] = group[i] == group[0] ? rest * pose[i] : Pose{};
+  return pose;
+}
+
+Assembly::Assembly(const Problem& problem)
+    : problem_(problem),
+      which_(some_of(problem.all)),
+      pairs_(problem.views, problem.axes, problem.fitted, which_) {}
+
+bool Assembly::contradicts(const std::vector<Pose>& template_from_view) const {
+  const std::size_t n = which_.size();
+  const auto pose = [&](std::size_t k) { return template_from_view[static_cast<std::size_t>(which_[k])]; };
+  double asked = 0, denied = 0;
+  for (std::size_t p = 0; p < std::min(n, kProbes); ++p) {
+    const std::size_t first = p * n / kProbes;
+    std::vector<std::size_t> others;
+    for (std::size_t k = 1; k <= std::min(n - 1, kProbedWith); ++k) others.push_back((first + k) % n);
+    const std::vector<Match> found = pairs_.matches(first, others, turn_of(problem_, first));
+    std::vector<std::size_t> order(others.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return found[a].evidence > found[b].evidence; });
+    for (std::size_t k = 0; k < std::min(kSurest, order.size()); ++k) {
+      const Match& match = found[order[k]];
+      if (match.evidence < kFewestEvidence) break;
+      const std::size_t second = others[order[k]];
+      const Match winner = pairs_.refined(first, second, pose(first).inverse() * pose(second));
+      ++asked;
+      denied += winner.evidence < match.evidence - kContradiction ? 1 : 0;
+    }
+  }
+  return denied > kTolerated * asked;
+}
+
+RoundState Assembly::assembled(const RoundOptions& options) const {
+  const std::size_t n = which_.size();
+  std::vector<Joint> joints;
+  for (std::size_t first = 0; first < n; ++first) {
+    std::vector<std::size_t> later(n - first - 1);
+    std::iota(later.begin(), later.end(), first + 1);
+    const std::vector<Match> found = pairs_.matches(first, later, turn_of(problem_, first));
+    for (std::size_t k = 0; k < later.size(); ++k) joints.push_back({first, later[k], found[k]});
+  }
+  std::vector<Pose> pose = spanning_poses(n, std::move(joints));
+
+  RoundState state;
+  state.parts = true;
+  const Subsets few = first_of(problem_.fitted, kRelaxedLocalisations);
+  state.mixture = scattered_mixture(problem_, few, which_, pose, centres_for(problem_), 1);
+  state.mixture.outlier_fraction = first_outlier_fraction(state.crowded);
+  for (const double width : kWidths) {  // errors add up along the tree: let all views settle
+    NoiseModel noise;
+    noise.planar = problem_.planar();
+    noise.width = std::max(width, options.first_width);
+    const FusionData data(problem_.views, problem_.axes, noise, few, which_);
+    MaximisationOptions em = fusion_options(state.crowded, noise.width);
+    em.support = false;  // a part that few views show is no strand
+    em.seed = problem_.seed;
+    maximise(state.mixture, data, pose, em);
+    maximise(state.mixture, data, pose, em);
+    refine_poses(state.mixture, data, pose, 3);
+  }
+  state.pose.resize(problem_.size());
+  for (std::size_t k = 0; k < n; ++k) state.pose[static_cast<std::size_t>(which_[k])] = pose[k];
+  return state;
+}
+
+}  // namespace polar
