@@ -1,6 +1,7 @@
 // One expectation-maximisation step of the template, poses fixed. Every localisation enters with its own
 // covariance, turned by its view's pose: mu_k = (sum r C^-1)^-1 sum r C^-1 x, everything in the template
-// frame.
+// frame. Under a rotation group the sums of a centre are the mean over its images, each turned back: the
+// exact step of a template whose free parameters are those of one asymmetric unit.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include "polar/core/pose.hpp"
 #include "polar/fusion/fusion_data.hpp"
 #include "polar/fusion/mixture.hpp"
+#include "polar/fusion/orbits.hpp"
 
 namespace polar {
 
@@ -20,6 +22,7 @@ struct MaximisationOptions {
   double reseed_distance = 0.05;  // where, in template units
   double smallest_outlier_fraction = 0.002;
   std::uint64_t seed = 0;  // of the sowing
+  RotationGroup group;     // keeps a mixture that is closed under it so; nothing is then sown
 };
 
 struct MaximisationReport {
