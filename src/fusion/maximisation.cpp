@@ -155,7 +155,9 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
                                                       static_cast<double>(data.size())
                                                 : 0;
     strength[k] = options.support ? s(0) * support : s(0);
-    const double weight = (options.free_weights ? s(0) : 1.0) * (options.support ? support * support : 1.0);
+    const double weight = options.keep_weights ? static_cast<double>(mixture.weight[col])
+                                               : (options.free_weights ? s(0) : 1.0) *
+                                                     (options.support ? support * support : 1.0);
     mixture.weight[col] = static_cast<float>(weight);
     total_weight += weight;
     Eigen::Matrix3d a;

@@ -10,7 +10,19 @@ namespace polar {
 namespace {
 
 constexpr int kSweeps = 3;               // of the fit of template and poses before it is judged
+constexpr double kOfNearest = 0.45;      // below a half
 constexpr double kSmallestMerge = 0.02;  // particle radii
+
+// Images of one site err apart by what the template errs; two sites of a template that has the group are
+// never nearer than its own nearest two.
+double merging_distance(const Mixture& m, const NoiseModel& noise) {
+  float least = INFINITY;
+  for (Eigen::Index k = 0; k < m.size(); ++k)
+    for (Eigen::Index l = 0; l < k; ++l)
+      least = std::min(least, (m.centre.col(k) - m.centre.col(l)).squaredNorm());
+  const double nearest = std::isfinite(least) ? std::sqrt(static_cast<double>(least)) : 0;
+  return std::max({kSmallestMerge, typical_spread(noise), kOfNearest * nearest});
+}
 
 void move_to(const Pose& canonical_from_template, RoundState& state) {
   for (Pose& pose : state.pose) pose = canonical_from_template * pose;
@@ -26,7 +38,7 @@ RoundState with_group(RoundState state, const NoiseModel& noise, const RotationG
   move_to(canonical_from_template, state);
   const auto before = static_cast<double>(state.mixture.size());
   state.group = group;
-  state.mixture = symmetrised(state.mixture, group, std::max(kSmallestMerge, typical_spread(noise)));
+  state.mixture = symmetrised(state.mixture, group, merging_distance(state.mixture, noise));
   state.occupancy *= before / static_cast<double>(state.mixture.size());
   return state;
 }
@@ -50,10 +62,11 @@ SymmetryGain SymmetryJudge::gain(const RotationGroup& group, const Pose& canonic
   return {total / localisations, std::sqrt(squares) / localisations};
 }
 
-// A centre may stand for several of the template's, so weights are free.
+// Weights stay what the template says, averaged over the group: sites are then alike on both sides, and none
+// of the two may learn where registration has turned the bright ones.
 std::vector<double> SymmetryJudge::verdict(RoundState state) const {
   MaximisationOptions em = final_fusion(state);
-  em.free_weights = true, em.support = false;
+  em.keep_weights = true;
   fuse(problem_, noise_, jury_, em, kSweeps, state);
   const std::vector<Pose> pose = poses_of(state, jury_.which);
   const FusionData fitted(problem_.views, problem_.axes, noise_, jury_.fitted, jury_.which);

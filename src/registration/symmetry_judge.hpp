@@ -7,9 +7,8 @@
 
 namespace polar {
 
-/// Template and poses in the group's own frame, the template symmetric: images that err apart by less than a
-/// centre's width are one. The occupancy's prior keeps its
-/// weight in localisations of a view, however many centres there are now.
+/// Template and poses in the group's own frame, the template symmetric: images of one site are merged. The
+/// occupancy's prior keeps its weight in localisations of a view, however many centres there are now.
 RoundState with_group(RoundState state, const NoiseModel& noise, const RotationGroup& group,
                       const Pose& canonical_from_template);
 

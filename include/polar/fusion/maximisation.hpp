@@ -16,6 +16,7 @@ namespace polar {
 
 struct MaximisationOptions {
   bool free_weights = false;  // centres may weigh differently (discrete sites); else all equal
+  bool keep_weights = false;  // of the centres as they are; only positions move
   bool support = true;        // weigh a centre by the share of views that support it (against strands)
   double weakest_share =
       0.05;  // a centre with less than this share of the mean is sown anew beside a strong one
