@@ -1,9 +1,9 @@
 #include "polar/fusion/calibration.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
+
+#include "polar/core/nelder_mead.hpp"
 
 namespace polar {
 
@@ -13,6 +13,7 @@ constexpr double kPriorWidth =
     0.1;  // of ln a; decides only where sigma hardly varies, a few localisations outweigh it
 constexpr double kSmallestExtra = 1e-3;  // of b, particle radii
 constexpr double kLargestExtra = 0.5;
+constexpr double kFirstStep = -0.4;  // of ln a and ln b
 constexpr int kMostEvaluations = 90;
 constexpr double kTolerance = 1e-4;  // mean log density: far below any decision
 constexpr std::size_t kMostLocalisations = 20000;
@@ -28,57 +29,6 @@ NoiseModel model(const Parameters& p, const NoiseModel& like) {
   noise.axial_factor = p.size() > 2 ? std::exp(p[2]) : noise.lateral_factor;
   noise.axial_extra = p.size() > 2 ? extra(p[3]) : noise.lateral_extra;
   return noise;
-}
-
-// J. A. Nelder, R. Mead, A simplex method for function minimization, The Computer Journal 7, 1965: few
-// parameters, a cost with no cheap derivative.
-template <typename Cost>
-Parameters minimise(const Parameters& start, double step, Cost cost) {
-  const std::size_t n = start.size();
-  std::vector<Parameters> vertex(n + 1, start);
-  std::vector<double> value(n + 1);
-  for (std::size_t i = 0; i < n; ++i) vertex[i + 1][i] += step;
-  int evaluations = 0;
-  const auto at = [&](const Parameters& p) { return ++evaluations, cost(p); };
-  for (std::size_t i = 0; i <= n; ++i) value[i] = at(vertex[i]);
-  std::vector<std::size_t> order(n + 1);
-  while (evaluations < kMostEvaluations) {
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] < value[b]; });
-    const std::size_t best = order[0], worst = order[n], second = order[n - 1];
-    if (value[worst] - value[best] < kTolerance) break;
-    Parameters middle(n, 0.0);
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t d = 0; d < n; ++d) middle[d] += vertex[order[i]][d] / static_cast<double>(n);
-    const auto towards = [&](double t) {
-      Parameters p(n);
-      for (std::size_t d = 0; d < n; ++d) p[d] = middle[d] + t * (vertex[worst][d] - middle[d]);
-      return p;
-    };
-    const Parameters reflected = towards(-1);
-    const double r = at(reflected);
-    if (r < value[best]) {
-      const Parameters expanded = towards(-2);
-      const double e = at(expanded);
-      vertex[worst] = e < r ? expanded : reflected;
-      value[worst] = std::min(e, r);
-    } else if (r < value[second]) {
-      vertex[worst] = reflected, value[worst] = r;
-    } else {
-      const Parameters inside = towards(r < value[worst] ? -0.5 : 0.5);
-      const double c = at(inside);
-      if (c < std::min(r, value[worst])) {
-        vertex[worst] = inside, value[worst] = c;
-        continue;
-      }
-      for (std::size_t i = 1; i <= n; ++i) {
-        for (std::size_t d = 0; d < n; ++d)
-          vertex[order[i]][d] = 0.5 * (vertex[order[i]][d] + vertex[best][d]);
-        value[order[i]] = at(vertex[order[i]]);
-      }
-    }
-  }
-  return vertex[static_cast<std::size_t>(std::min_element(value.begin(), value.end()) - value.begin())];
 }
 
 Subsets at_most(const Subsets& held_out, std::size_t most) {
@@ -142,7 +92,7 @@ CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3
   Parameters p;
   first(start.lateral_factor, start.lateral_extra, p);
   if (has_axis(views, axes)) first(start.axial_factor, start.axial_extra, p);
-  report.noise = model(minimise(p, -0.4, cost), start);
+  report.noise = model(nelder_mead(p, {kFirstStep, kTolerance, kMostEvaluations}, cost), start);
   report.log_likelihood = mean(report.noise);
   return report;
 }

@@ -37,9 +37,11 @@ struct Sums {
   }
 };
 
-// Turns one centre's sums from the frame of a view into the template's and adds them.
-void add_turned(const float* sums, std::size_t stride, std::size_t k, const Eigen::Matrix3d& r,
-                const Eigen::Vector3d& t, double* total, std::size_t out_stride) {
+// Moves the sums of centre `k` into another frame and adds `part` of them to those of centre `to`.
+template <typename Number>
+void add_turned(const Number* sums, std::size_t stride, std::size_t k, const Eigen::Matrix3d& r,
+                const Eigen::Vector3d& t, double part, double* total, std::size_t out_stride,
+                std::size_t to) {
   const auto s = [&](std::size_t i) { return static_cast<double>(sums[i * stride + k]); };
   Eigen::Matrix3d p;
   p << s(1), s(2), s(3), s(2), s(4), s(5), s(3), s(5), s(6);
@@ -47,7 +49,7 @@ void add_turned(const float* sums, std::size_t stride, std::size_t k, const Eige
   const Eigen::Vector3d px = r * Eigen::Vector3d(s(7), s(8), s(9)) + turned * t;
   const double out[kernel::kSums] = {s(0),         turned(0, 0), turned(0, 1), turned(0, 2), turned(1, 1),
                                      turned(1, 2), turned(2, 2), px[0],        px[1],        px[2]};
-  for (std::size_t i = 0; i < kernel::kSums; ++i) total[i * out_stride + k] += out[i];
+  for (std::size_t i = 0; i < kernel::kSums; ++i) total[i * out_stride + to] += part * out[i];
 }
 
 Sums sums_of(const BlockedMixture& blocked, std::size_t centres, const FusionData& data,
@@ -76,13 +78,37 @@ Sums sums_of(const BlockedMixture& blocked, std::size_t centres, const FusionDat
     sums.localisations += static_cast<double>(view.size());
     for (std::size_t k = 0; k < centres; ++k) {
       if (own[k] == 0) continue;
-      add_turned(own.data(), padded, k, poses[i].rotation, poses[i].translation, sums.total.data(), centres);
+      add_turned(own.data(), padded, k, poses[i].rotation, poses[i].translation, 1, sums.total.data(),
+                 centres, k);
       const double share = own[k] / std::max(mine, 1e-12);
       sums.share[k] += share;
       sums.share_sq[k] += share * share;
     }
   }
   return sums;
+}
+
+// Every centre's sums become the mean over its orbit, as its own frame sees it.
+void average_over(const std::vector<std::vector<Eigen::Index>>& orbits, const RotationGroup& group,
+                  std::size_t n, Sums& sums) {
+  const Sums own = sums;
+  const double part = 1 / static_cast<double>(group.size());
+  for (const auto& orbit : orbits) {
+    std::vector<double> mean(kernel::kSums, 0.0);
+    double share = 0, share_sq = 0;
+    for (std::size_t g = 0; g < group.size(); ++g) {
+      const auto k = static_cast<std::size_t>(orbit[g]);
+      add_turned(own.total.data(), n, k, group[g].transpose(), Eigen::Vector3d::Zero(), part, mean.data(), 1,
+                 0);
+      share += part * own.share[k], share_sq += part * own.share_sq[k];
+    }
+    for (std::size_t g = 0; g < group.size(); ++g) {
+      const auto k = static_cast<std::size_t>(orbit[g]);
+      for (std::size_t s = 0; s < kernel::kSums; ++s) sums.total[s * n + k] = 0;  // met again: on an axis
+      add_turned(mean.data(), 1, 0, group[g], Eigen::Vector3d::Zero(), 1, sums.total.data(), n, k);
+      sums.share[k] = share, sums.share_sq[k] = share_sq;
+    }
+  }
 }
 
 // Sows the weakest centres anew beside strong ones, each strong one used once a step.
@@ -112,9 +138,12 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
   const BlockedMixture blocked(mixture);
   const auto centres = static_cast<std::size_t>(mixture.size());
   const std::size_t block = std::max<std::size_t>(4, (data.size() + kMostBlocks - 1) / kMostBlocks);
-  const Sums sums = ordered_sum(data.size(), block, Sums{}, [&](std::size_t begin, std::size_t end) {
+  Sums sums = ordered_sum(data.size(), block, Sums{}, [&](std::size_t begin, std::size_t end) {
     return sums_of(blocked, centres, data, poses, begin, end);
   });
+  const auto orbit = options.group.empty() ? std::vector<std::vector<Eigen::Index>>{}
+                                           : orbits(mixture.centre, options.group);
+  average_over(orbit, options.group, centres, sums);
 
   std::vector<double> strength(centres, 0.0);
   double total_weight = 0;
@@ -126,7 +155,9 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
                                                       static_cast<double>(data.size())
                                                 : 0;
     strength[k] = options.support ? s(0) * support : s(0);
-    const double weight = (options.free_weights ? s(0) : 1.0) * (options.support ? support * support : 1.0);
+    const double weight = options.keep_weights ? static_cast<double>(mixture.weight[col])
+                                               : (options.free_weights ? s(0) : 1.0) *
+                                                     (options.support ? support * support : 1.0);
     mixture.weight[col] = static_cast<float>(weight);
     total_weight += weight;
     Eigen::Matrix3d a;
@@ -141,7 +172,10 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
   mixture.outlier_fraction = std::clamp(
       (sums.localisations - sums.inliers + kPseudoOutliers) / (sums.localisations + kPseudoLocalisations),
       options.smallest_outlier_fraction, 0.95);
-  sow_again(mixture, strength, options);
+  if (options.group.empty())
+    sow_again(mixture, strength, options);
+  else
+    snap_to_orbits(mixture, options.group, orbit);
   sort_into_blocks(mixture);
   return {sums.log_likelihood, sums.localisations};
 }

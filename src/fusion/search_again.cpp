@@ -17,6 +17,30 @@ struct Outcome {
   double margin = 0;
 };
 
+// Angle between template_from_view rotations, the nearest of their images.
+double angle_modulo(const RotationGroup& group, const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  double least = geodesic_angle(a, b);
+  for (const Eigen::Matrix3d& g : group) least = std::min(least, geodesic_angle(g * a, b));
+  return least;
+}
+
+// The best few basins. Under a group most of them are images of one: as many are added that are not, so that
+// the second best is known too. The images stay: each is seen from its own grid point, one of them well.
+std::vector<Basin> basins_modulo(const GridScores& scores, const SearchGrid& grid,
+                                 const Eigen::Matrix3f& turn, const SearchAgainOptions& options) {
+  if (options.group.empty()) return basins(scores, grid, turn, options.basins);
+  const auto few = static_cast<std::size_t>(options.basins);
+  std::vector<Basin> out;
+  for (const Basin& b : basins(scores, grid, turn, options.basins * static_cast<int>(options.group.size()))) {
+    const bool image = std::any_of(out.begin(), out.end(), [&](const Basin& o) {
+      return angle_modulo(options.group, b.template_from_view.rotation, o.template_from_view.rotation) <
+             options.escape_rad;
+    });
+    if (out.size() < few || (!image && out.size() < 2 * few)) out.push_back(b);
+  }
+  return out;
+}
+
 Outcome best_of(const std::vector<RefinedPose>& candidates, const RefinedPose& current,
                 const SearchAgainOptions& options, std::size_t localisations) {
   const auto top = std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
@@ -26,7 +50,8 @@ Outcome best_of(const std::vector<RefinedPose>& candidates, const RefinedPose& c
   const RefinedPose& best = better ? *top : current;
   Outcome out{best.view_from_template.inverse(), false, INFINITY};
   const auto angle = [&](const RefinedPose& p) {
-    return geodesic_angle(p.view_from_template.rotation, best.view_from_template.rotation);
+    return angle_modulo(options.group, p.view_from_template.rotation.transpose(),
+                        best.view_from_template.rotation.transpose());
   };
   out.escaped = angle(current) >= options.escape_rad &&  // eq. 15
                 best.log_likelihood > current.log_likelihood + options.escape_gain;
@@ -73,7 +98,7 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
                          options.evaluations);
     };
     std::vector<RefinedPose> candidates;
-    for (const Basin& basin : basins(scores, grid, turn, options.basins))
+    for (const Basin& basin : basins_modulo(scores, grid, turn, options))
       candidates.push_back(refined(basin.template_from_view));
     outcome[i] = best_of(candidates, refined(poses[i]), options, few.size());
   });

@@ -26,6 +26,7 @@ Results registered(const smlm::ParticleSet& all, const std::vector<bool>& second
     if (second[i] == want_second) r.particles.particles.push_back(all.particles[i]);
   // The halves share no random number either.
   options.seed = KeyedRandom(options.seed, want_second ? 2 : 1, kSplitStage).bits();
+  if (options.symmetry == "detect") options.symmetry = "none";  // of the whole; nobody asks it of a half
   Views views = prepare_views(r.particles);
   r.registration = engine(views, options, progress);
   r.normalisation = std::move(views.normalisation);

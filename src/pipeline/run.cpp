@@ -21,6 +21,7 @@
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/table_reader.hpp"
+#include "symmetry_text.hpp"
 
 namespace polar {
 
@@ -150,6 +151,7 @@ std::vector<std::string> describe(const Results& r, const std::string& directory
   lines.push_back("start        " + winner(g) + " won of " + std::to_string(g.starts.size()));
   lines.push_back("rounds       " + std::to_string(g.rounds) +
                   (g.converged ? ", converged: " : ", not converged: ") + g.stopped_because);
+  if (g.symmetry) lines.push_back(pipeline::symmetry_line(*g.symmetry, r.normalisation.scale_nm));
   if (r.resolution) lines.push_back(resolution_line(*r.resolution));
   lines.push_back("seconds      " + format("%.1f", seconds));
   lines.push_back("results      " + directory);
@@ -182,6 +184,7 @@ nlohmann::json summary_json(const Results& r, const std::vector<std::string>& li
                             {"seconds", seconds},
                             {"files", files},
                             {"text", lines}};
+  if (g.symmetry) summary["symmetry"] = pipeline::symmetry_json(*g.symmetry, r.normalisation.scale_nm);
   if (r.resolution)
     summary["resolution"] = {{"halves", half_maps_json(r.resolution->data)},
                              {"noise", half_maps_json(r.resolution->noise)},

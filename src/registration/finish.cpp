@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "jury.hpp"
 #include "polar/fusion/calibration.hpp"
 #include "polar/fusion/discretise.hpp"
 #include "polar/fusion/maximisation.hpp"
@@ -15,8 +16,6 @@ namespace polar {
 
 namespace {
 
-constexpr double kDecisionLocalisations = 60000;  // over all views: enough to choose by, cheap to fit
-constexpr std::size_t kMostOfAView = 600;
 constexpr int kFuseSweeps = 3;
 constexpr int kMergedSweeps = 8;
 constexpr double kMergeFactors[] = {1, 2, 4, 8};  // times the width of a centre
@@ -28,68 +27,6 @@ constexpr double kLeastOfSites = 0.3;  // occupancy strength: few sites are miss
 constexpr int kPolishRounds = 2, kPolishRoundsOfSites = 4;  // many free centres begin to fit noise
 constexpr double kMostOutliers = 0.8;
 constexpr double kMostRotationStd = 0.5236;  // 30 degrees: such a pose says nothing
-
-double typical_spread(const NoiseModel& n) { return std::max(n.lateral_extra, n.width); }
-
-// Sites nearer than this are not told apart within one view.
-double reach_of(const NoiseModel& n) { return 2 * typical_spread(n); }
-
-// The views and localisations by which everything but the poses is decided: whole views, because a view of
-// which a few localisations are looked at says little about what it shows.
-struct Jury {
-  std::vector<int> which;
-  Subsets fitted;    // of every view of the problem
-  Subsets held_out;  // empty for views that are not among `which`
-};
-
-Jury jury(const Problem& problem) {
-  const auto per_view = static_cast<double>(std::min<std::size_t>(
-      kMostOfAView,
-      static_cast<std::size_t>(problem.localisations) / std::max<std::size_t>(1, problem.size())));
-  const std::size_t n = std::min(
-      problem.size(), static_cast<std::size_t>(kDecisionLocalisations / std::max(1.0, per_view)) + 1);
-  Jury jury;
-  jury.fitted = first_of(problem.fitted, kMostOfAView);
-  jury.held_out.resize(problem.size());
-  for (std::size_t k = 0; k < n; ++k) {  // evenly through the set: neighbours may share a field of view
-    const std::size_t i = k * problem.size() / n;
-    jury.which.push_back(static_cast<int>(i));
-    jury.held_out[i] = problem.held_out[i];
-  }
-  return jury;
-}
-
-std::vector<Pose> poses_of(const RoundState& state, const std::vector<int>& which) {
-  std::vector<Pose> pose;
-  for (const int i : which) pose.push_back(state.pose[static_cast<std::size_t>(i)]);
-  return pose;
-}
-
-// A surface is described by centres of any weight. Sites weigh the same: that labels are missing is said by
-// each view's occupancy, and weights of their own would let symmetric particles pile their bright sites on
-// one. A centre that dies stays dead: the number of sites is being found.
-MaximisationOptions final_fusion(const RoundState& state) {
-  MaximisationOptions em;
-  em.free_weights = !state.sites;
-  em.support = !state.sites;
-  em.weakest_share = 0;
-  return em;
-}
-
-void fuse(const Problem& problem, const NoiseModel& noise, const Jury& jury, int sweeps, RoundState& state) {
-  FusionData data(problem.views, problem.axes, noise, jury.fitted, jury.which);
-  std::vector<Pose> pose = poses_of(state, jury.which);
-  const auto set_occupancy = [&] {
-    data.set_visibility(occupancy(state.mixture, data, pose, state.occupancy, reach_of(noise)));
-  };
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    set_occupancy();
-    maximise(state.mixture, data, pose, final_fusion(state));
-    set_occupancy();
-    refine_poses(state.mixture, data, pose, 2);
-  }
-  for (std::size_t k = 0; k < pose.size(); ++k) state.pose[static_cast<std::size_t>(jury.which[k])] = pose[k];
-}
 
 // How much a view's own occupancy is believed: judged by localisations that did not estimate it. Infinite
 // where views show the whole template. Returns the mean log density of the held-out localisations.
@@ -130,7 +67,7 @@ NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noi
   const Jury few = jury(problem);
   for (int cycle = 0; cycle < cycles; ++cycle) {
     noise = calibrated(problem, few, noise, state);
-    fuse(problem, noise, few, kFuseSweeps, state);
+    fuse(problem, noise, few, final_fusion(state), kFuseSweeps, state);
   }
   return noise;
 }
@@ -148,12 +85,14 @@ NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, Round
     RoundState trial = state;
     trial.sites = true;
     trial.occupancy = std::max(trial.occupancy, kLeastOfSites);
-    trial.mixture = merged(state.mixture, factor * std::max(typical_spread(noise), kSmallestMerge));
+    const double distance = factor * std::max(typical_spread(noise), kSmallestMerge);
+    trial.mixture = state.group.empty() ? merged(state.mixture, distance)
+                                        : symmetrised(state.mixture, state.group, distance);
     if (trial.mixture.size() == best.mixture.size()) continue;
     NoiseModel trial_noise = noise;
     double score = 0;
     for (int cycle = 0; cycle < 2; ++cycle) {
-      fuse(problem, trial_noise, few, kMergedSweeps / 2, trial);
+      fuse(problem, trial_noise, few, final_fusion(trial), kMergedSweeps / 2, trial);
       trial_noise = calibrated(problem, few, trial_noise, trial);
       score = choose_occupancy(problem, few, trial_noise, trial);
     }

@@ -6,7 +6,11 @@
 
 #include "finish.hpp"
 #include "latent_method.hpp"
+#include "polar/core/symmetry_group.hpp"
+#include "smlm/error.hpp"
 #include "starts.hpp"
+#include "symmetry_stage.hpp"
+#include "symmetry_units.hpp"
 
 namespace polar {
 
@@ -61,8 +65,12 @@ struct Run {
   Registration out;
 };
 
+bool imposes(const RegistrationOptions& options) {
+  return options.symmetry != "none" && options.symmetry != "detect";
+}
+
 // From a registered template to the result.
-Registration from_state(Run& run, RoundState state) {
+Registration from_state(Run& run, const RegistrationOptions& options, RoundState state) {
   const Problem& problem = run.problems.of(state.crowded);
   NoiseModel noise;
   noise.planar = problem.planar();
@@ -71,10 +79,20 @@ Registration from_state(Run& run, RoundState state) {
   run.timed("calibration");
   noise = choose_centres(problem, noise, state);
   run.timed("centres");
+  if (imposes(options)) {
+    run.out.symmetry = impose_symmetry(problem, noise, options.symmetry, state);
+    noise = calibrate_and_fuse(problem, 1, noise, state);
+    noise = choose_centres(problem, noise, state);
+    run.timed("symmetry");
+  }
   search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
   noise = calibrate_and_fuse(problem, 1, noise, state);
   if (state.sites) noise = choose_centres(problem, noise, state);
   run.timed("last search");
+  if (options.symmetry == "detect") {
+    run.out.symmetry = detect_symmetry(problem, noise, state);
+    run.timed("symmetry");
+  }
   polish_all(problem, noise, state, run.out);
   run.timed("polish");
   Registration& out = run.out;
@@ -83,7 +101,30 @@ Registration from_state(Run& run, RoundState state) {
   out.stopped_because = std::to_string(state.escaped) + " of " + std::to_string(problem.size()) +
                         " views moved by more than 15 degrees in the last search";
   warn_about_calibration(out.calibration, out.warnings);
+  if (out.symmetry) {
+    count_units(problem, out);
+    const std::string warning = symmetry_warning(*out.symmetry);
+    if (!warning.empty()) out.warnings.push_back(warning);
+  }
   return std::move(out);
+}
+
+void check_symmetry(const RegistrationOptions& options, std::vector<std::string>& faults) {
+  if (options.symmetry == "none") return;
+  if (options.symmetry != "detect" &&
+      (!is_symmetry_group(options.symmetry) || options.symmetry == "C1" || options.symmetry == "D1"))
+    faults.push_back("registration.symmetry: '" + options.symmetry +
+                     "' is none of none, detect, C<n> or D<n> (n from 2 to 360), T, O, I");
+  if (options.method == "latent")
+    faults.push_back("registration.symmetry: '" + options.symmetry +
+                     "' needs registration.method: likelihood");
+}
+
+// Only the table tells whether the data are planar.
+void check_planar(const Views& views, const RegistrationOptions& options) {
+  if (views.planar && imposes(options) && options.symmetry[0] != 'C')
+    throw smlm::Error(smlm::Fault::usage, "registration.symmetry",
+                      "'" + options.symmetry + "' is not a group of planar data", "use none, detect or C<n>");
 }
 
 }  // namespace
@@ -104,10 +145,7 @@ std::vector<std::string> violations(const RegistrationOptions& options) {
   LatentOptions latent = options.latent;
   latent.optimizer = options.optimizer;
   for (const std::string& v : violations(latent)) faults.push_back("registration." + v);
-  if (options.symmetry != "none")
-    faults.push_back(
-        "registration.symmetry: '" + options.symmetry +
-        "' cannot be imposed yet; use none, and polar evaluate --symmetry to score modulo a group");
+  check_symmetry(options, faults);
   return faults;
 }
 
@@ -117,6 +155,7 @@ bool needs_weights(const RegistrationOptions& options) {
 }
 
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {
+  check_planar(views, options);
   if (options.method == "latent") {
     Stopwatch watch;
     Registration out = latent_method(make_problems(views, options.seed).plain, options, progress);
@@ -131,16 +170,17 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
     run.out.stopped_because = "cancelled";
     return std::move(run.out);
   }
-  return from_state(run, std::move(starts.winner));
+  return from_state(run, options, std::move(starts.winner));
 }
 
 Registration register_from(const Views& views, const std::vector<Pose>& template_from_view,
                            const RegistrationOptions& options, Progress& progress) {
+  check_planar(views, options);
   Run run(views, options, progress);
   RoundState state = state_at(run.problems.thinned, run.rounds, template_from_view);
   run_rounds(run.problems.thinned, run.grid, run.rounds, progress, state);
   run.timed("rounds");
-  return from_state(run, std::move(state));
+  return from_state(run, options, std::move(state));
 }
 
 }  // namespace polar

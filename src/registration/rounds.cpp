@@ -54,6 +54,7 @@ void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptio
   noise.width = std::max(noise.width, options.search_width);
   SearchAgainOptions search;
   search.basins = options.basins;
+  search.group = state.group;
   search.most_localisations = options.search_localisations;
   search.grid.translation = axis_shifts(options.shift, problem.planar());
   search.grid.promising = options.promising;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "polar/core/progress.hpp"
+#include "polar/fusion/orbits.hpp"
 #include "polar/fusion/pose_search.hpp"
 #include "problem.hpp"
 
@@ -34,6 +35,7 @@ struct RoundState {
   bool crowded = true;         // template_tools.hpp
   double occupancy =
       std::numeric_limits<double>::infinity();  // polar/fusion/occupancy.hpp: strength of its prior
+  RotationGroup group;                          // of the template, where one is imposed (symmetry.hpp)
   bool sites = false;        // the template is one of discrete sites of equal weight (finish.hpp)
   double width = 0;          // of the template after the last round kept
   double held_out = -1e300;  // mean log density of the held-out localisations at that width

@@ -5,6 +5,7 @@
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
+#include "symmetry_record.hpp"
 
 namespace polar {
 
@@ -212,6 +213,8 @@ void write_result_file(const std::string& path, const Results& results,
   write_template(file, results);
   write_superparticle(file, results, superparticle);
   write_run(file, results);
+  if (results.registration.symmetry)
+    write_symmetry(file, *results.registration.symmetry, results.normalisation.scale_nm);
   if (results.resolution) write_resolution(file, *results.resolution);
   file.close();
   atomic.commit();

@@ -9,6 +9,7 @@
 #include "polar/core/pose.hpp"
 #include "polar/fusion/fusion_data.hpp"
 #include "polar/fusion/mixture.hpp"
+#include "polar/fusion/orbits.hpp"
 #include "polar/fusion/pose_search.hpp"
 
 namespace polar {
@@ -21,6 +22,7 @@ struct SearchAgainOptions {
   int sigma_classes = 3;
   double escape_rad = 0.2617993877991494;  // T_R = 15 degrees
   double escape_gain = 2;  // log likelihood that a move must gain to count: less is a symmetric twin or a tie
+  RotationGroup group;     // of the template: poses that differ by an element are one
   SearchOptions grid;
 };
 

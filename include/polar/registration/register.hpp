@@ -21,7 +21,7 @@ struct RegistrationOptions {
   std::string optimizer = "levenberg_marquardt";  // of the latent registration: | adamw (the paper's)
   std::string weights;                            // of the autoencoder; empty: those that ship
   LatentOptions latent;                           // seed, search and optimizer are taken from here
-  std::string symmetry = "none";                  // none; nothing else can be imposed yet
+  std::string symmetry = "none";  // none | detect | C<n>, D<n>, T, O, I: imposed on the template
 };
 
 /// One sentence per fault, empty when the options can be used.

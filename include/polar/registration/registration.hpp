@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "polar/core/pose.hpp"
+#include "polar/registration/symmetry.hpp"
 
 namespace polar {
 
@@ -55,6 +57,7 @@ struct Registration {
   FusedTemplate fused;
   Calibration calibration;
   std::vector<StartReport> starts;
+  std::optional<Symmetry> symmetry;  // where it is asked for
   int rounds = 0;
   bool converged = false;
   std::string stopped_because = "never ran";

@@ -7,8 +7,8 @@
 
 #include "polar/core/parallel.hpp"
 #include "polar/core/so3.hpp"
+#include "polar/core/symmetry_group.hpp"
 #include "polar/registration/prepare.hpp"
-#include "polar/results/symmetry_group.hpp"
 #include "polar/simulation/simulate.hpp"
 
 namespace polar {
@@ -127,11 +127,21 @@ TEST(Violations, nameTheKeyAndTheValue) {
   RegistrationOptions o;
   o.starts = {"random", "random", "guess"};
   o.search = "slow";
-  o.symmetry = "C8";
+  o.symmetry = "C8x";
   const auto faults = violations(o);
   ASSERT_EQ(faults.size(), 4u);
   EXPECT_NE(faults[0].find("guess"), std::string::npos);
   EXPECT_NE(faults[3].find("registration.symmetry"), std::string::npos);
+  for (const char* known : {"none", "detect", "C8", "D8", "T", "O", "I"}) {
+    RegistrationOptions fine;
+    fine.symmetry = known;
+    EXPECT_TRUE(violations(fine).empty()) << known;
+  }
+  for (const char* unknown : {"C0", "C1", "D1", "C361", "t", "detect8", ""}) {
+    RegistrationOptions wrong;
+    wrong.symmetry = unknown;
+    EXPECT_EQ(violations(wrong).size(), 1u) << unknown;
+  }
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
-#include "polar/results/symmetry_group.hpp"
+#include "polar/core/symmetry_group.hpp"
 #include "smlm/error.hpp"
 
 namespace polar {

@@ -12,4 +12,7 @@ namespace polar {
 /// comes first. Throws smlm::Error (usage) for any other name.
 std::vector<Eigen::Matrix3d> symmetry_rotations(const std::string& name);
 
+/// Whether it has a list for that name.
+bool is_symmetry_group(const std::string& name);
+
 }  // namespace polar

@@ -1,4 +1,4 @@
-#include "polar/results/symmetry_group.hpp"
+#include "polar/core/symmetry_group.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -37,6 +37,11 @@ int fold(const std::string& name) {
   return parsed.ec == std::errc() && parsed.ptr == end && n >= 1 && n <= kMostUnits ? n : 0;
 }
 }  // namespace
+
+bool is_symmetry_group(const std::string& name) {
+  return name == "none" || name == "T" || name == "O" || name == "I" ||
+         (name.size() > 1 && (name[0] == 'C' || name[0] == 'D') && fold(name) > 0);
+}
 
 std::vector<Eigen::Matrix3d> symmetry_rotations(const std::string& name) {
   const Eigen::Vector3d x(1, 0, 0), z(0, 0, 1), diagonal(1, 1, 1);
