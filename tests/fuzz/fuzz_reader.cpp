@@ -1,5 +1,6 @@
 // One reader on arbitrary bytes: it may refuse them with an smlm::Error, and whatever it accepts must be a
-// sound table. POLAR_FUZZ_FORMAT is the reader's name, or "auto".
+// sound table, with every HDF5 handle closed. POLAR_FUZZ_FORMAT is the reader's name, or "auto".
+#include <hdf5.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -40,7 +41,21 @@ void check(const smlm::LocalisationTable& table) {
   require(!smlm::to_json(smlm::inspect(table)).empty());
 }
 
+// Of ours; the library keeps handles of its own types.
+hsize_t open_handles() {
+  hsize_t all = 0;
+  for (const H5I_type_t type : {H5I_FILE, H5I_GROUP, H5I_DATASET, H5I_DATASPACE, H5I_ATTR}) {
+    hsize_t count = 0;
+    if (H5Inmembers(type, &count) >= 0) all += count;
+  }
+  return all;
+}
+
 }  // namespace
+
+// HDF5 1.10 loses memory of its own where it gives up on a damaged file: that is why such files are first
+// read in another process. Whether we lose its handles is tested below.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\n"; }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   smlm::ReadOptions options;
@@ -54,6 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       check(smlm::find_reader(smlm::read_head(path), options).read(path, options));
     } catch (const smlm::Error&) {
     }
+    require(open_handles() == 0);
   }
   return 0;
 }
