@@ -7,6 +7,7 @@
 #include "finish.hpp"
 #include "latent_method.hpp"
 #include "starts.hpp"
+#include "states.hpp"
 
 namespace polar {
 
@@ -41,8 +42,8 @@ void warn_about_calibration(const Calibration& c, std::vector<std::string>& warn
 
 // Everything a run carries from stage to stage.
 struct Run {
-  Run(const Views& views, const RegistrationOptions& options, Progress& p)
-      : problems(make_problems(views, options.seed)), progress(p) {
+  Run(const Views& views, const RegistrationOptions& options, Progress& p, Checkpoint& c)
+      : problems(make_problems(views, options.seed)), progress(p), checkpoint(c) {
     out.view.resize(views.view.size());
     if (options.search == "exhaustive") {
       rounds.rotations = kExhaustiveRotations;
@@ -55,26 +56,48 @@ struct Run {
 
   Problems problems;
   Progress& progress;
+  Checkpoint& checkpoint;
   Stopwatch watch;
   RoundOptions rounds;
   SearchGrid grid;
   Registration out;
 };
 
-// From a registered template to the result.
-Registration from_state(Run& run, RoundState state) {
+Registration cancelled(Run& run) {
+  run.out.stopped_because = "cancelled";
+  return std::move(run.out);
+}
+
+// Calibration and everything else that is decided before the polish. False: cancelled.
+bool fuse(Run& run, FusedState& fused) {
+  auto& [state, noise] = fused;
   const Problem& problem = run.problems.of(state.crowded);
-  NoiseModel noise;
   noise.planar = problem.planar();
   noise.width = state.width;
   noise = calibrate_and_fuse(problem, 3, noise, state);
   run.timed("calibration");
+  if (run.progress.cancelled()) return false;
   noise = choose_centres(problem, noise, state);
   run.timed("centres");
+  if (run.progress.cancelled()) return false;
   search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
   noise = calibrate_and_fuse(problem, 1, noise, state);
   if (state.sites) noise = choose_centres(problem, noise, state);
   run.timed("last search");
+  return true;
+}
+
+// From a registered template to the result.
+Registration from_state(Run& run, RoundState registered) {
+  FusedState fused;
+  if (!restore(run.checkpoint, "fused", fused)) {
+    fused.state = std::move(registered);
+    if (!fuse(run, fused)) return cancelled(run);
+    keep(run.checkpoint, "fused", fused);
+  }
+  if (run.progress.cancelled()) return cancelled(run);
+  auto& [state, noise] = fused;
+  const Problem& problem = run.problems.of(state.crowded);
   polish_all(problem, noise, state, run.out);
   run.timed("polish");
   Registration& out = run.out;
@@ -117,28 +140,38 @@ bool needs_weights(const RegistrationOptions& options) {
 }
 
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {
+  Checkpoint nothing;
+  return register_views(views, options, progress, nothing);
+}
+
+Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress,
+                            Checkpoint& checkpoint) {
   if (options.method == "latent") {
     Stopwatch watch;
     Registration out = latent_method(make_problems(views, options.seed).plain, options, progress);
     out.timings.push_back({"latent", watch.lap()});
     return out;
   }
-  Run run(views, options, progress);
-  StartsOutcome starts = compete(run.problems, options, run.grid, run.rounds, progress);
-  run.out.starts = starts.report;
-  run.timed("starts");
-  if (!starts.finished) {
-    run.out.stopped_because = "cancelled";
-    return std::move(run.out);
+  Run run(views, options, progress, checkpoint);
+  StartsOutcome starts;
+  if (!restore(checkpoint, "winner", starts)) {
+    starts = compete(run.problems, options, run.grid, run.rounds, progress, checkpoint);
+    run.timed("starts");
+    if (!starts.finished) return cancelled(run);
+    checkpoint.drop("start "), checkpoint.drop("finalist ");
+    keep(checkpoint, "winner", starts);
   }
+  run.out.starts = starts.report;
   return from_state(run, std::move(starts.winner));
 }
 
 Registration register_from(const Views& views, const std::vector<Pose>& template_from_view,
                            const RegistrationOptions& options, Progress& progress) {
-  Run run(views, options, progress);
+  Checkpoint nothing;
+  Run run(views, options, progress, nothing);
   RoundState state = state_at(run.problems.thinned, run.rounds, template_from_view);
-  run_rounds(run.problems.thinned, run.grid, run.rounds, progress, state);
+  if (!run_rounds(run.problems.thinned, run.grid, run.rounds, progress, nothing, state))
+    return cancelled(run);
   run.timed("rounds");
   return from_state(run, std::move(state));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "polar_start.hpp"
+#include "states.hpp"
 
 namespace polar {
 
@@ -30,7 +31,8 @@ int random_starts(const StartContext& context, const AnnealingOptions& options) 
 }
 
 std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartContext& plain,
-                                   const RegistrationOptions& wishes, Progress& progress) {
+                                   const RegistrationOptions& wishes, Progress& progress,
+                                   Checkpoint& checkpoint) {
   const AnnealingOptions options;
   const auto wanted = [&](const char* name) {
     return std::find(wishes.starts.begin(), wishes.starts.end(), name) != wishes.starts.end();
@@ -40,6 +42,12 @@ std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartConte
   const int total = random + (polar ? 1 : 0) + (wanted("imaged") ? 1 : 0);
   std::vector<Hypothesis> hypotheses;
   for (int k = 0; k < total && !progress.cancelled(); ++k) {
+    const std::string name = "start " + std::to_string(k);
+    Hypothesis known;
+    if (restore(checkpoint, name, known)) {
+      hypotheses.push_back(std::move(known));
+      continue;
+    }
     if (k < random) {
       const bool crowded = k % 2 == 0;
       const StartContext& context = crowded ? thinned : plain;
@@ -55,6 +63,7 @@ std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartConte
       gentle.sweeps = options.sweeps / 2;
       anneal(plain, gentle, true, hypotheses.back());
     }
+    keep(checkpoint, name, hypotheses.back());
     progress.step("starts", k + 1, total);
   }
   return hypotheses;
@@ -73,9 +82,10 @@ RoundState state_of(const StartContext& context, const Hypothesis& h) {
 }  // namespace
 
 StartsOutcome compete(const Problems& problems, const RegistrationOptions& options, const SearchGrid& grid,
-                      const RoundOptions& rounds, Progress& progress) {
+                      const RoundOptions& rounds, Progress& progress, Checkpoint& checkpoint) {
   const StartContext thinned = start_context(problems.thinned), plain = start_context(problems.plain);
-  std::vector<Hypothesis> hypotheses = short_runs(thinned, plain, options, progress);
+  std::vector<Hypothesis> hypotheses = short_runs(thinned, plain, options, progress, checkpoint);
+  if (progress.cancelled()) return {};
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
   StartsOutcome out;
@@ -86,10 +96,14 @@ StartsOutcome compete(const Problems& problems, const RegistrationOptions& optio
                    static_cast<int>(kFinalistLocalisations / std::max(1.0, problems.plain.localisations)), 1,
                    kMostFinalists)));
   std::size_t best = 0;
-  for (std::size_t k = 0; k < finalists && !progress.cancelled(); ++k) {
-    const Problem& problem = problems.of(hypotheses[k].crowded);
-    RoundState state = state_of(hypotheses[k].crowded ? thinned : plain, hypotheses[k]);
-    run_rounds(problem, grid, rounds, progress, state);
+  for (std::size_t k = 0; k < finalists; ++k) {
+    PartOfCheckpoint here(checkpoint, "finalist " + std::to_string(k));
+    RoundState state;
+    if (!restore(here, "registered", state)) {
+      state = state_of(hypotheses[k].crowded ? thinned : plain, hypotheses[k]);
+      if (!run_rounds(problems.of(hypotheses[k].crowded), grid, rounds, progress, here, state)) return {};
+      keep(here, "registered", state);
+    }
     out.report[k].final_held_out_log_likelihood = state.held_out;
     if (k > 0 &&
         out.report[k].final_held_out_log_likelihood <= out.report[best].final_held_out_log_likelihood)
