@@ -268,7 +268,7 @@ class Resume(PolarCase):
         self.ok("run", self.config, "--output", "timed")
         whole_s = time.monotonic() - begin
         expected = {name: (self.folder / "whole" / name).read_bytes() for name in self.FILES}
-        instants = random.Random(1)
+        instants = random.Random(self.TRIALS)
         hits = continued = 0
         for trial in range(self.TRIALS):
             number = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM)[trial % 3]

@@ -3,6 +3,8 @@
 
 #include <hdf5.h>
 
+#include <initializer_list>
+
 // HDF5 1.10 loses memory of its own where it gives up on a damaged file: that is why such files are first
 // read in another process. Whether we lose its handles is asked below.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\n"; }
