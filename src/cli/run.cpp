@@ -27,7 +27,8 @@ int run(const Arguments& a) {
   if (!a.output.empty()) config.output.directory = a.output;
   const RunOutcome outcome = polar::run(config, a.flags, reporter);
   if (outcome.cancelled) {
-    reporter.note("stopped by signal " + std::to_string(received_signal()) + ": nothing was written");
+    reporter.note("stopped by signal " + std::to_string(received_signal()) + ": no result was written" +
+                  (outcome.resumable ? "; --resume continues from the checkpoint" : ""));
     return 128 + received_signal();
   }
   for (const std::string& line : outcome.summary) std::printf("%s\n", line.c_str());
@@ -47,7 +48,8 @@ void add_run(CLI::App& app, Action& action) {
   sub->add_flag("--quiet", a->quiet, "no progress, no warnings");
   sub->add_flag("--json-log", a->json_log, "progress and warnings as JSON lines on stderr");
   auto* overwrite = sub->add_flag("--overwrite", a->flags.overwrite, "replace an earlier result");
-  sub->add_flag("--resume", a->flags.resume, "keep a complete result of the same input and configuration")
+  sub->add_flag("--resume", a->flags.resume,
+                "keep a complete result of the same computation, or continue one that was cut short")
       ->excludes(overwrite);
   sub->callback([a, &action] { action = [a] { return run(*a); }; });
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "model/half.hpp"
-#include "model/sha256.hpp"
+#include "polar/core/sha256.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"

@@ -19,7 +19,8 @@ std::vector<bool> split(std::size_t n, std::uint64_t seed) {
 }
 
 Results registered(const smlm::ParticleSet& all, const std::vector<bool>& second, bool want_second,
-                   RegistrationOptions options, Progress& progress, const Engine& engine) {
+                   RegistrationOptions options, Progress& progress, Checkpoint& checkpoint,
+                   const Engine& engine) {
   Results r;
   r.particles.table = all.table;
   for (std::size_t i = 0; i < all.particles.size(); ++i)
@@ -28,30 +29,34 @@ Results registered(const smlm::ParticleSet& all, const std::vector<bool>& second
   options.seed = KeyedRandom(options.seed, want_second ? 2 : 1, kSplitStage).bits();
   if (options.symmetry == "detect") options.symmetry = "none";  // of the whole; nobody asks it of a half
   Views views = prepare_views(r.particles);
-  r.registration = engine(views, options, progress);
+  PartOfCheckpoint here(checkpoint, want_second ? "second" : "first");
+  r.registration = engine(views, options, progress, here);
   r.normalisation = std::move(views.normalisation);
   r.planar = views.planar;
   return r;
 }
 
 HalfMaps half_maps(const smlm::ParticleSet& particles, const std::vector<bool>& second,
-                   const RegistrationOptions& options, Progress& progress, const Engine& engine) {
-  const Results a = registered(particles, second, false, options, progress, engine);
+                   const RegistrationOptions& options, Progress& progress, Checkpoint& checkpoint,
+                   const Engine& engine) {
+  const Results a = registered(particles, second, false, options, progress, checkpoint, engine);
   if (progress.cancelled()) return {};
-  const Results b = registered(particles, second, true, options, progress, engine);
+  const Results b = registered(particles, second, true, options, progress, checkpoint, engine);
   if (progress.cancelled()) return {};
   return compare_half_maps(a, b, options.seed);
 }
 }  // namespace
 
 ResolutionReport resolve_halves(const smlm::ParticleSet& particles, const RegistrationOptions& options,
-                                Progress& progress, const Engine& engine) {
+                                Progress& progress, Checkpoint& checkpoint, const Engine& engine) {
   ResolutionReport report;
+  PartOfCheckpoint data(checkpoint, "data"), noise(checkpoint, "noise");
   if (particles.particles.size() < kFewestParticles) return report;
   const std::vector<bool> second = split(particles.particles.size(), options.seed);
-  report.data = half_maps(particles, second, options, progress, engine);
+  report.data = half_maps(particles, second, options, progress, data, engine);
   if (progress.cancelled()) return report;
-  report.noise = half_maps(noise_particles(particles, options.seed), second, options, progress, engine);
+  report.noise =
+      half_maps(noise_particles(particles, options.seed), second, options, progress, noise, engine);
   return report;
 }
 

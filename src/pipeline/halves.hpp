@@ -11,6 +11,6 @@ namespace polar::pipeline {
 /// the half maps at the end and correlates them; the same again for noise_particles. Fewer than four
 /// particles cannot be split: the report is then empty.
 ResolutionReport resolve_halves(const smlm::ParticleSet& particles, const RegistrationOptions& options,
-                                Progress& progress, const Engine& engine);
+                                Progress& progress, Checkpoint& checkpoint, const Engine& engine);
 
 }  // namespace polar::pipeline

@@ -14,9 +14,15 @@ constexpr std::uint64_t kOffset = 0xcbf29ce484222325, kPrime = 0x100000001b3;
 void mix(std::uint64_t& hash, const char* data, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<unsigned char>(data[i])) * kPrime;
 }
+
+std::string text_of(std::uint64_t hash) {
+  char text[32];
+  std::snprintf(text, sizeof text, "fnv1a64:%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
 }  // namespace
 
-std::string input_hash(const std::vector<std::string>& files, const std::string& configuration) {
+InputHash input_hash(const std::vector<std::string>& files, const std::string& configuration) {
   std::uint64_t hash = kOffset;
   std::vector<char> block(1 << 20);
   for (const std::string& file : files) {
@@ -30,10 +36,14 @@ std::string input_hash(const std::vector<std::string>& files, const std::string&
     const std::string length = ":" + std::to_string(size) + ";";  // so that files cannot run into each other
     mix(hash, length.data(), length.size());
   }
+  InputHash named;
+  named.files = text_of(hash);
   mix(hash, configuration.data(), configuration.size());
-  char text[32];
-  std::snprintf(text, sizeof text, "fnv1a64:%016llx", static_cast<unsigned long long>(hash));
-  return text;
+  named.both = text_of(hash);
+  hash = kOffset;
+  mix(hash, configuration.data(), configuration.size());
+  named.configuration = text_of(hash);
+  return named;
 }
 
 }  // namespace polar::pipeline

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "checkpoint_store.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "smlm/error.hpp"
 
@@ -25,6 +26,12 @@ bool holds_something(const std::string& path) {
   for (const auto& entry : std::filesystem::directory_iterator(path))
     if (entry.path().filename() != kLock) return true;
   return false;
+}
+
+std::vector<std::string> our_files() {
+  std::vector<std::string> names = result_files();
+  names.insert(names.end(), checkpoint_files().begin(), checkpoint_files().end());
+  return names;
 }
 }  // namespace
 
@@ -43,6 +50,7 @@ OutputDirectory::OutputDirectory(const std::string& path, const RunFlags& flags)
     ::close(lock_);
     fail(path, "another process is writing here", "wait for it, or choose another output.directory");
   }
+  remove_leftovers();
   if (!flags.overwrite && !flags.resume && holds_something(path)) {
     ::close(lock_);
     fail(path, "is not empty", "give --overwrite or --resume, or choose another output.directory");
@@ -52,6 +60,19 @@ OutputDirectory::OutputDirectory(const std::string& path, const RunFlags& flags)
 OutputDirectory::~OutputDirectory() {
   ::unlink(file(kLock).c_str());  // while it is still locked: nobody else can hold this name
   ::close(lock_);
+}
+
+void OutputDirectory::remove_leftovers() const {
+  const std::string end = ".tmp";
+  for (const auto& entry : std::filesystem::directory_iterator(path_)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() < end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0) continue;
+    for (const std::string& ours : our_files())
+      if (name.compare(0, ours.size() + 2, "." + ours + ".") == 0) {
+        std::error_code ignored;
+        std::filesystem::remove(entry.path(), ignored);
+      }
+  }
 }
 
 void OutputDirectory::remove_other_results(const std::vector<std::string>& written) const {

@@ -23,6 +23,10 @@ class OutputDirectory {
   void remove_other_results(const std::vector<std::string>& written) const;
 
  private:
+  /// What a run left under temporary names when it was killed: nobody else writes here while we hold the
+  /// lock.
+  void remove_leftovers() const;
+
   std::string path_;
   int lock_ = -1;
 };

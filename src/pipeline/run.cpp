@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "checkpoint_store.hpp"
 #include "halves.hpp"
 #include "input_hash.hpp"
 #include "output_directory.hpp"
@@ -58,13 +59,18 @@ std::vector<std::string> input_files(const RunConfig& config) {
   return files;
 }
 
-// Whether the directory holds a complete result of this very computation. One of another computation is
-// never mixed with or silently replaced.
-bool is_complete(const pipeline::OutputDirectory& directory, const std::string& hash) {
+// Whether the directory holds a complete result of this very computation.
+bool is_complete_of(const pipeline::OutputDirectory& directory, const std::string& hash) {
   std::ifstream in(directory.file(kSummary));
   if (!in) return false;
   const nlohmann::json summary = nlohmann::json::parse(in, nullptr, false);
-  if (summary.is_object() && summary.value("input_hash", "") == hash) return true;
+  if (!summary.is_object() || !summary.contains("input_hash")) return false;
+  return summary["input_hash"] == hash;
+}
+
+// A result of another computation is never mixed with or silently replaced.
+void refuse_other_result(const pipeline::OutputDirectory& directory) {
+  if (!std::filesystem::exists(directory.file(kSummary))) return;
   throw smlm::Error(smlm::Fault::input, directory.file(kSummary), "belongs to another input or configuration",
                     "give --overwrite to replace it, or choose another output.directory");
 }
@@ -192,17 +198,19 @@ nlohmann::json summary_json(const Results& r, const std::vector<std::string>& li
   return summary;
 }
 
-Results compute(const RunConfig& config, const std::string& hash, Progress& progress, const Engine& engine) {
+Results compute(const RunConfig& config, const std::string& hash, Progress& progress, Checkpoint& checkpoint,
+                const Engine& engine) {
   Results r;
   r.particles = read_particles(config, progress);
   Views views = prepare_views(r.particles, {});
-  r.registration = engine(views, config.registration, progress);
+  PartOfCheckpoint all(checkpoint, "all");
+  r.registration = engine(views, config.registration, progress, all);
   r.normalisation = std::move(views.normalisation);
   r.planar = views.planar;
   r.provenance = {program_version(), run_config_text(config), config.registration.seed, hash,
                   library_versions()};
   if (config.output.resolution == "halves" && accepted_particles(r) > 0 && !progress.cancelled())
-    r.resolution = pipeline::resolve_halves(r.particles, config.registration, progress, engine);
+    r.resolution = pipeline::resolve_halves(r.particles, config.registration, progress, checkpoint, engine);
   return r;
 }
 
@@ -234,11 +242,18 @@ std::vector<std::string> write(const Results& r, const RunConfig& config,
 RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress, const Engine& engine) {
   const Stopwatch watch;
   const pipeline::OutputDirectory directory(config.output.directory, flags);
-  const std::string hash = pipeline::input_hash(input_files(config), computation_text(config));
-  if (flags.resume && is_complete(directory, hash))
-    return {false, {"results      " + config.output.directory + " (complete already)"}};
-  const Results r = compute(config, hash, progress, engine);
-  if (progress.cancelled()) return {true, {}};
+  const pipeline::InputHash hash = pipeline::input_hash(input_files(config), computation_text(config));
+  pipeline::CheckpointStore checkpoint(directory, {program_version(), hash.files, hash.configuration});
+  if (!flags.resume) {
+    checkpoint.remove();
+  } else if (is_complete_of(directory, hash.both)) {
+    checkpoint.remove();
+    return {false, false, {"results      " + config.output.directory + " (complete already)"}};
+  } else if (!checkpoint.resume(progress)) {
+    refuse_other_result(directory);
+  }
+  const Results r = compute(config, hash.both, progress, checkpoint, engine);
+  if (progress.cancelled()) return {true, checkpoint.flush(), {}};
   for (const std::string& warning : r.registration.warnings) progress.note("warning: " + warning);
   if (accepted_particles(r) == 0) {
     const auto reasons = rejections(r);
@@ -253,11 +268,15 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   std::vector<std::string> kept = written;
   kept.emplace_back(kSummary);
   directory.remove_other_results(kept);
-  return {false, lines};
+  checkpoint.remove();
+  return {false, false, lines};
 }
 
 RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress) {
-  return run(config, flags, progress, register_views);
+  return run(config, flags, progress,
+             [](const Views& views, const RegistrationOptions& options, Progress& p, Checkpoint& checkpoint) {
+               return register_views(views, options, p, checkpoint);
+             });
 }
 
 }  // namespace polar

@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::uint32_t kPairTurnStage = 27;
 constexpr std::size_t kMostViews = 50;   // pairs grow with the square of it
-constexpr std::size_t kProbes = 2;       // views whose matches the winner is held against
-constexpr std::size_t kProbedWith = 24;  // views each
-constexpr std::size_t kSurest = 12;      // matches each that are believed
+constexpr std::size_t kProbes = 4;       // views whose matches the winner is held against
+constexpr std::size_t kProbedWith = 48;  // views each
+constexpr std::size_t kSurest = 16;      // matches each that are believed
 constexpr double kFewestEvidence = 1.5;  // of a match that says anything
 constexpr double kContradiction = 0.5;   // evidence that the winner's alignment must lack
-constexpr double kTolerated = 0.1;       // share of contradicted matches: pairs err too
+constexpr double kTolerated = 0.05;      // share of contradicted matches: pairs err too
 constexpr double kWidths[] = {0.15, 0.15, 0.12, 0.12, 0.09, 0.09};  // of the sweeps that relax an assembly
 constexpr std::size_t kRelaxedLocalisations = 200;                  // of a view
 
@@ -84,14 +84,16 @@ bool Assembly::contradicts(const std::vector<Pose>& template_from_view) const {
   return denied > kTolerated * asked;
 }
 
-RoundState Assembly::assembled(const RoundOptions& options) const {
+RoundState Assembly::assembled(const RoundOptions& options, Progress& progress) const {
   const std::size_t n = which_.size();
   std::vector<Joint> joints;
-  for (std::size_t first = 0; first < n; ++first) {
+  const auto pairs = static_cast<int>(n * (n - 1) / 2);
+  for (std::size_t first = 0; first < n && !progress.cancelled(); ++first) {
     std::vector<std::size_t> later(n - first - 1);
     std::iota(later.begin(), later.end(), first + 1);
     const std::vector<Match> found = pairs_.matches(first, later, turn_of(problem_, first));
     for (std::size_t k = 0; k < later.size(); ++k) joints.push_back({first, later[k], found[k]});
+    progress.step("pairs of views", static_cast<int>(joints.size()), pairs);
   }
   std::vector<Pose> pose = spanning_poses(n, std::move(joints));
 

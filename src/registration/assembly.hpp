@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "polar/core/pose.hpp"
+#include "polar/core/progress.hpp"
 #include "polar/fusion/pair_search.hpp"
 #include "problem.hpp"
 #include "rounds.hpp"
@@ -31,7 +32,8 @@ class Assembly {
   bool contradicts(const std::vector<Pose>& template_from_view) const;
 
   /// A template of the assembled views and their poses; the other views are at rest.
-  RoundState assembled(const RoundOptions& options) const;
+  /// Meaningless when cancelled.
+  RoundState assembled(const RoundOptions& options, Progress& progress) const;
 
  private:
   const Problem& problem_;

@@ -9,6 +9,7 @@
 #include "polar/core/symmetry_group.hpp"
 #include "smlm/error.hpp"
 #include "starts.hpp"
+#include "states.hpp"
 #include "symmetry_stage.hpp"
 #include "symmetry_units.hpp"
 
@@ -45,8 +46,8 @@ void warn_about_calibration(const Calibration& c, std::vector<std::string>& warn
 
 // Everything a run carries from stage to stage.
 struct Run {
-  Run(const Views& views, const RegistrationOptions& options, Progress& p)
-      : problems(make_problems(views, options.seed)), progress(p) {
+  Run(const Views& views, const RegistrationOptions& options, Progress& p, Checkpoint& c)
+      : problems(make_problems(views, options.seed)), progress(p), checkpoint(c) {
     out.view.resize(views.view.size());
     if (options.search == "exhaustive") {
       rounds.rotations = kExhaustiveRotations;
@@ -59,6 +60,7 @@ struct Run {
 
   Problems problems;
   Progress& progress;
+  Checkpoint& checkpoint;
   Stopwatch watch;
   RoundOptions rounds;
   SearchGrid grid;
@@ -69,16 +71,23 @@ bool imposes(const RegistrationOptions& options) {
   return options.symmetry != "none" && options.symmetry != "detect";
 }
 
-// From a registered template to the result.
-Registration from_state(Run& run, const RegistrationOptions& options, RoundState state) {
+Registration cancelled(Run& run) {
+  run.out.stopped_because = "cancelled";
+  return std::move(run.out);
+}
+
+// Calibration and everything else that is decided before the polish. False: cancelled.
+bool fuse(Run& run, const RegistrationOptions& options, FusedState& fused) {
+  auto& [state, noise] = fused;
   const Problem& problem = run.problems.of(state.crowded);
-  NoiseModel noise;
   noise.planar = problem.planar();
   noise.width = state.width;
   noise = calibrate_and_fuse(problem, 3, noise, state);
   run.timed("calibration");
+  if (run.progress.cancelled()) return false;
   noise = choose_centres(problem, noise, state);
   run.timed("centres");
+  if (run.progress.cancelled()) return false;
   if (imposes(options)) {
     run.out.symmetry = impose_symmetry(problem, noise, options.symmetry, state);
     noise = calibrate_and_fuse(problem, 1, noise, state);
@@ -89,6 +98,22 @@ Registration from_state(Run& run, const RegistrationOptions& options, RoundState
   noise = calibrate_and_fuse(problem, 1, noise, state);
   if (state.sites) noise = choose_centres(problem, noise, state);
   run.timed("last search");
+  return true;
+}
+
+// From a registered template to the result.
+Registration from_state(Run& run, const RegistrationOptions& options, RoundState registered) {
+  // What is found about an imposed group is no part of the state: those runs fuse again.
+  const bool kept = !imposes(options);
+  FusedState fused;
+  if (!kept || !restore(run.checkpoint, "fused", fused)) {
+    fused.state = std::move(registered);
+    if (!fuse(run, options, fused)) return cancelled(run);
+    if (kept) keep(run.checkpoint, "fused", fused);
+  }
+  if (run.progress.cancelled()) return cancelled(run);
+  auto& [state, noise] = fused;
+  const Problem& problem = run.problems.of(state.crowded);
   if (options.symmetry == "detect") {
     run.out.symmetry = detect_symmetry(problem, noise, state);
     run.timed("symmetry");
@@ -155,6 +180,12 @@ bool needs_weights(const RegistrationOptions& options) {
 }
 
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {
+  Checkpoint nothing;
+  return register_views(views, options, progress, nothing);
+}
+
+Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress,
+                            Checkpoint& checkpoint) {
   check_planar(views, options);
   if (options.method == "latent") {
     Stopwatch watch;
@@ -162,23 +193,27 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
     out.timings.push_back({"latent", watch.lap()});
     return out;
   }
-  Run run(views, options, progress);
-  StartsOutcome starts = compete(run.problems, options, run.grid, run.rounds, progress);
-  run.out.starts = starts.report;
-  run.timed("starts");
-  if (!starts.finished) {
-    run.out.stopped_because = "cancelled";
-    return std::move(run.out);
+  Run run(views, options, progress, checkpoint);
+  StartsOutcome starts;
+  if (!restore(checkpoint, "winner", starts)) {
+    starts = compete(run.problems, options, run.grid, run.rounds, progress, checkpoint);
+    run.timed("starts");
+    if (!starts.finished) return cancelled(run);
+    checkpoint.drop("start "), checkpoint.drop("finalist ");
+    keep(checkpoint, "winner", starts);
   }
+  run.out.starts = starts.report;
   return from_state(run, options, std::move(starts.winner));
 }
 
 Registration register_from(const Views& views, const std::vector<Pose>& template_from_view,
                            const RegistrationOptions& options, Progress& progress) {
   check_planar(views, options);
-  Run run(views, options, progress);
+  Checkpoint nothing;
+  Run run(views, options, progress, nothing);
   RoundState state = state_at(run.problems.thinned, run.rounds, template_from_view);
-  run_rounds(run.problems.thinned, run.grid, run.rounds, progress, state);
+  if (!run_rounds(run.problems.thinned, run.grid, run.rounds, progress, nothing, state))
+    return cancelled(run);
   run.timed("rounds");
   return from_state(run, options, std::move(state));
 }

@@ -6,6 +6,7 @@
 #include "polar/core/rng.hpp"
 #include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/search_again.hpp"
+#include "states.hpp"
 #include "template_tools.hpp"
 
 namespace polar {
@@ -16,6 +17,7 @@ constexpr double kLocalisationsPerCentre = 25;
 constexpr int kFewestCentres = 96, kMostCentres = 512;
 constexpr std::size_t kSweepLocalisations = 300;  // of a view while the template is still moving
 constexpr int kGivenSweeps = 8;
+constexpr const char* kUnderWay = "rounds";
 
 void sweep(const Problem& problem, const Subsets& few, const NoiseModel& noise, int sweeps, int round,
            RoundState& state) {
@@ -73,36 +75,41 @@ void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptio
   state.escaped = report.escaped;
 }
 
-void run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,
-                Progress& progress, RoundState& state) {
+bool run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,
+                Progress& progress, Checkpoint& checkpoint, RoundState& state) {
   const int total = 1 + static_cast<int>(std::ceil(std::log(options.last_width / options.first_width) /
                                                    std::log(options.narrowing)));
   const Subsets few = first_of(problem.fitted, kSweepLocalisations);
   NoiseModel noise;
   noise.planar = problem.planar();
-  bool searching = true;
-  RoundState best;
-  for (int round = 0; round < total && !progress.cancelled(); ++round, ++state.rounds) {
+  RoundsUnderWay now{0, true, std::move(state), {}};
+  auto& [round, searching, at, best] = now;
+  restore(checkpoint, kUnderWay, now);
+  for (; round < total; ++round, ++at.rounds) {
+    if (round > 0) keep(checkpoint, kUnderWay, now);
+    if (progress.cancelled()) return false;
     noise.width = std::max(options.last_width, options.first_width * std::pow(options.narrowing, round));
     if (searching && round < options.most_searches) {
-      search_all(problem, grid, options, noise, problem.fitted, state);
-      searching = round == 0 || state.escaped > options.settled * static_cast<double>(problem.size());
+      search_all(problem, grid, options, noise, problem.fitted, at);
+      searching = round == 0 || at.escaped > options.settled * static_cast<double>(problem.size());
     }
     if (round == 0) {
-      const double outliers = state.mixture.outlier_fraction;
-      state.mixture = scattered_mixture(problem, few, problem.all, state.pose, centres_for(problem), 1);
-      state.mixture.outlier_fraction = std::max(outliers, first_outlier_fraction(state.crowded));
+      const double outliers = at.mixture.outlier_fraction;
+      at.mixture = scattered_mixture(problem, few, problem.all, at.pose, centres_for(problem), 1);
+      at.mixture.outlier_fraction = std::max(outliers, first_outlier_fraction(at.crowded));
     }
-    sweep(problem, few, noise, options.sweeps, round, state);
-    state.width = noise.width;
-    state.held_out = held_out_score(problem, state.mixture, state.pose, noise);
-    if (state.held_out > best.held_out)
-      best = state;
+    sweep(problem, few, noise, options.sweeps, round, at);
+    at.width = noise.width;
+    at.held_out = held_out_score(problem, at.mixture, at.pose, noise);
+    if (at.held_out > best.held_out)
+      best = at;
     else if (!searching)
       break;
     progress.step("registering", round + 1, total);
   }
-  if (best.width > 0) state = std::move(best);
+  state = std::move(best.width > 0 ? best : at);
+  checkpoint.drop(kUnderWay);
+  return true;
 }
 
 }  // namespace polar

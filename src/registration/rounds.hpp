@@ -8,6 +8,7 @@
 #include "polar/core/progress.hpp"
 #include "polar/fusion/orbits.hpp"
 #include "polar/fusion/pose_search.hpp"
+#include "polar/registration/checkpoint.hpp"
 #include "problem.hpp"
 
 namespace polar {
@@ -56,8 +57,9 @@ void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptio
                 const Subsets& subset, RoundState& state);
 
 /// From a template and poses of some views (identity for the others) to poses of all. Narrows as long as
-/// held-out localisations gain by it: few localisations end with a wide template.
-void run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,
-                Progress& progress, RoundState& state);
+/// held-out localisations gain by it: few localisations end with a wide template. False: cancelled between
+/// two rounds; the next call with the same checkpoint goes on from there.
+bool run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,
+                Progress& progress, Checkpoint& checkpoint, RoundState& state);
 
 }  // namespace polar

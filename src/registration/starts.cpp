@@ -5,6 +5,7 @@
 #include "assembly.hpp"
 #include "finish.hpp"
 #include "polar_start.hpp"
+#include "states.hpp"
 
 namespace polar {
 
@@ -36,13 +37,20 @@ bool wants(const RegistrationOptions& options, const char* start) {
 }
 
 std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartContext& plain,
-                                   const RegistrationOptions& wishes, Progress& progress) {
+                                   const RegistrationOptions& wishes, Progress& progress,
+                                   Checkpoint& checkpoint) {
   const AnnealingOptions options;
   const int random = wants(wishes, "random") ? random_starts(plain, options) : 0;
   const bool polar = wants(wishes, "polar");
   const int total = random + (polar ? 1 : 0) + (wants(wishes, "imaged") ? 1 : 0);
   std::vector<Hypothesis> hypotheses;
   for (int k = 0; k < total && !progress.cancelled(); ++k) {
+    const std::string name = "start " + std::to_string(k);
+    Hypothesis known;
+    if (restore(checkpoint, name, known)) {
+      hypotheses.push_back(std::move(known));
+      continue;
+    }
     if (k < random) {
       const bool crowded = k % 2 == 0;
       const StartContext& context = crowded ? thinned : plain;
@@ -58,6 +66,7 @@ std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartConte
       gentle.sweeps = options.sweeps / 2;
       anneal(plain, gentle, true, hypotheses.back());
     }
+    keep(checkpoint, name, hypotheses.back());
     progress.step("starts", k + 1, total);
   }
   return hypotheses;
@@ -72,15 +81,19 @@ double score_of_parts(const Problem& problem, const RoundState& state) {
 
 // Pairs of views have the last word: where they contradict the winner, or there is none, what they say is
 // registered too. Both are then judged as parts.
-void challenge(const Problems& problems, const SearchGrid& grid, const RoundOptions& rounds,
-               Progress& progress, StartsOutcome& out) {
+// False: cancelled.
+bool challenge(const Problems& problems, const SearchGrid& grid, const RoundOptions& rounds,
+               Progress& progress, Checkpoint& checkpoint, StartsOutcome& out) {
   const Problem& problem = problems.thinned;
   const Assembly assembly(problem);
-  if (out.finished && !assembly.contradicts(out.winner.pose)) return;
-  progress.step("pairs of views", 0, 1);
-  RoundState state = assembly.assembled(rounds);
-  run_rounds(problem, grid, rounds, progress, state);
-  if (progress.cancelled()) return;
+  if (out.finished && !assembly.contradicts(out.winner.pose)) return true;
+  RoundState state;
+  if (!restore(checkpoint, "pairs", state)) {
+    state = assembly.assembled(rounds, progress);
+    if (progress.cancelled()) return false;
+    keep(checkpoint, "pairs", state);
+  }
+  if (!run_rounds(problem, grid, rounds, progress, checkpoint, state)) return false;
   StartReport report{"assembled", score_of_parts(problem, state), state.held_out, false};
   if (!out.finished ||
       report.held_out_log_likelihood > score_of_parts(problems.of(out.winner.crowded), out.winner)) {
@@ -90,6 +103,7 @@ void challenge(const Problems& problems, const SearchGrid& grid, const RoundOpti
     out.finished = true;
   }
   out.report.push_back(report);
+  return true;
 }
 
 RoundState state_of(const StartContext& context, const Hypothesis& h) {
@@ -105,9 +119,10 @@ RoundState state_of(const StartContext& context, const Hypothesis& h) {
 }  // namespace
 
 StartsOutcome compete(const Problems& problems, const RegistrationOptions& options, const SearchGrid& grid,
-                      const RoundOptions& rounds, Progress& progress) {
+                      const RoundOptions& rounds, Progress& progress, Checkpoint& checkpoint) {
   const StartContext thinned = start_context(problems.thinned), plain = start_context(problems.plain);
-  std::vector<Hypothesis> hypotheses = short_runs(thinned, plain, options, progress);
+  std::vector<Hypothesis> hypotheses = short_runs(thinned, plain, options, progress, checkpoint);
+  if (progress.cancelled()) return {};
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
   StartsOutcome out;
@@ -118,10 +133,14 @@ StartsOutcome compete(const Problems& problems, const RegistrationOptions& optio
                    static_cast<int>(kFinalistLocalisations / std::max(1.0, problems.plain.localisations)), 1,
                    kMostFinalists)));
   std::size_t best = 0;
-  for (std::size_t k = 0; k < finalists && !progress.cancelled(); ++k) {
-    const Problem& problem = problems.of(hypotheses[k].crowded);
-    RoundState state = state_of(hypotheses[k].crowded ? thinned : plain, hypotheses[k]);
-    run_rounds(problem, grid, rounds, progress, state);
+  for (std::size_t k = 0; k < finalists; ++k) {
+    PartOfCheckpoint here(checkpoint, "finalist " + std::to_string(k));
+    RoundState state;
+    if (!restore(here, "registered", state)) {
+      state = state_of(hypotheses[k].crowded ? thinned : plain, hypotheses[k]);
+      if (!run_rounds(problems.of(hypotheses[k].crowded), grid, rounds, progress, here, state)) return {};
+      keep(here, "registered", state);
+    }
     out.report[k].final_held_out_log_likelihood = state.held_out;
     if (k > 0 &&
         out.report[k].final_held_out_log_likelihood <= out.report[best].final_held_out_log_likelihood)
@@ -131,7 +150,10 @@ StartsOutcome compete(const Problems& problems, const RegistrationOptions& optio
     out.finished = true;
   }
   if (out.finished) out.report[best].won = true;
-  if (wants(options, "assembled") && !progress.cancelled()) challenge(problems, grid, rounds, progress, out);
+  if (wants(options, "assembled")) {
+    PartOfCheckpoint here(checkpoint, "finalist assembled");
+    if (!challenge(problems, grid, rounds, progress, here, out)) return {};
+  }
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include "ab_initio.hpp"
 #include "polar/core/progress.hpp"
+#include "polar/registration/checkpoint.hpp"
 #include "polar/registration/register.hpp"
 #include "rounds.hpp"
 
@@ -20,6 +21,6 @@ struct StartsOutcome {
 };
 
 StartsOutcome compete(const Problems& problems, const RegistrationOptions& options, const SearchGrid& grid,
-                      const RoundOptions& rounds, Progress& progress);
+                      const RoundOptions& rounds, Progress& progress, Checkpoint& checkpoint);
 
 }  // namespace polar

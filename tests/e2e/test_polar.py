@@ -1,9 +1,12 @@
 import fcntl
 import json
 import os
+import random
 import resource
+import shutil
 import signal
 import subprocess
+import sys
 import time
 import unittest
 
@@ -222,13 +225,92 @@ class Signals(PolarCase):
         process.send_signal(number)
         self.assertEqual(process.wait(timeout=120), 128 + number)
         process.communicate()
-        self.assertEqual(list((self.folder / "results").iterdir()), [])
+        left = {path.name for path in (self.folder / "results").iterdir()}
+        self.assertLessEqual(left, {"checkpoint.1", "checkpoint.2"})
+        shutil.rmtree(self.folder / "results")
 
     def test_signals_end_cleanly(self):
         self.simulate("simulation: {particles: 150, blinks_mean: 20, cramer_rao: false}")
         self.run_config()
         self.stop(signal.SIGTERM)
         self.stop(signal.SIGINT)
+
+
+class Resume(PolarCase):
+    """A run that is cut short at any instant goes on to the bits of one that was not."""
+    TRIALS = int(os.environ.get("POLAR_KILL_TRIALS", "6"))
+    FILES = ("poses.csv", "aligned.csv", "template.hdf")
+
+    def setUp(self):
+        super().setUp()
+        self.simulate("simulation: {particles: 12, blinks_mean: 4, cramer_rao: false}")
+        self.config = self.run_config(more="registration: {starts: [imaged]}\n"
+                                           "output: {formats: [csv, vtkhdf], preview: false}\n")
+
+    def interrupted(self, number, seconds, *arguments):
+        """Whether the run was still there to be hit."""
+        process = subprocess.Popen([POLAR, "run", self.config, "--quiet", *arguments], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        try:
+            process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            process.send_signal(number)
+        process.communicate()
+        self.assertIn(process.returncode, (0, -number, 128 + number))
+        return process.returncode != 0
+
+    def checkpoints(self):
+        return sorted((self.folder / "results").glob("checkpoint.*"))
+
+    def test_killed_at_random_instants(self):
+        self.ok("run", self.config, "--output", "whole")
+        begin = time.monotonic()
+        self.ok("run", self.config, "--output", "timed")
+        whole_s = time.monotonic() - begin
+        expected = {name: (self.folder / "whole" / name).read_bytes() for name in self.FILES}
+        instants = random.Random(self.TRIALS)
+        hits = continued = 0
+        for trial in range(self.TRIALS):
+            number = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM)[trial % 3]
+            hits += self.interrupted(number, instants.uniform(0, whole_s))
+            for _ in range(2):
+                hits += self.interrupted(signal.SIGKILL, instants.uniform(0, whole_s), "--resume")
+            done = self.polar("run", self.config, "--resume")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            continued += "continuing from" in done.stderr
+            for name in self.FILES:
+                self.assertEqual((self.folder / "results" / name).read_bytes(), expected[name], (trial, name))
+            left = {path.name for path in (self.folder / "results").iterdir()}
+            self.assertEqual(left, {*self.FILES, "aligned.hdf", "summary.json"}, trial)
+            shutil.rmtree(self.folder / "results")
+        print(f"{self.TRIALS} trials, {hits} interruptions, {continued} continued from a checkpoint", file=sys.stderr)
+        self.assertGreater(hits, 0)
+
+    def test_checkpoints_of_others_and_damaged_ones_are_refused(self):
+        self.assertTrue(self.interrupted_with_checkpoint(signal.SIGTERM))
+        for path in self.checkpoints():
+            path.write_bytes(path.read_bytes()[:-7])
+        self.fails(3, "truncated checkpoint", "run", self.config, "--resume")
+        for path in self.checkpoints():
+            path.unlink()
+        self.assertTrue(self.interrupted_with_checkpoint(signal.SIGUSR1, "--resume"))
+        self.fails(4, "not empty", "run", self.config)
+        self.fails(3, "another configuration", "run", self.config, "--resume", "--set", "registration.seed=2")
+        table = self.folder / "data/localisations.csv"
+        text = table.read_text()
+        table.write_text(text.replace("\n", "\n ", 2))
+        self.fails(3, "another input", "run", self.config, "--resume")
+        table.write_text(text)
+        self.ok("run", self.config, "--resume")
+        self.assertEqual(self.checkpoints(), [])
+
+    def interrupted_with_checkpoint(self, number, *arguments):
+        process = subprocess.Popen([POLAR, "run", self.config, "--quiet", *arguments], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while process.poll() is None and not self.checkpoints():
+            time.sleep(0.001)
+        process.send_signal(number)
+        return process.wait() == 128 + number and self.checkpoints()
 
 
 class Recall(PolarCase):

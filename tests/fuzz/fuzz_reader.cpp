@@ -1,30 +1,14 @@
 // One reader on arbitrary bytes: it may refuse them with an smlm::Error, and whatever it accepts must be a
-// sound table. POLAR_FUZZ_FORMAT is the reader's name, or "auto".
-#include <unistd.h>
-
+// sound table, with every HDF5 handle closed. POLAR_FUZZ_FORMAT is the reader's name, or "auto".
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <string>
 
+#include "hdf5_handles.hpp"
+#include "input_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/inspect.hpp"
 #include "smlm/table_reader.hpp"
 
 namespace {
-
-std::string write_input(const std::uint8_t* data, std::size_t size) {
-  static const std::string path = "/dev/shm/polar_fuzz_" + std::to_string(::getpid()) + ".input";
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr || std::fwrite(data, 1, size, file) != size) std::abort();
-  std::fclose(file);
-  return path;
-}
-
-void require(bool sound) {
-  if (!sound) std::abort();
-}
 
 void check(const smlm::LocalisationTable& table) {
   const std::size_t n = table.size();
@@ -50,10 +34,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.drop_nonfinite = drop;
     try {
       // Not read_tables(): it would first try in another process, where nothing is seen.
-      const std::string path = write_input(data, size);
+      const std::string path = input_file(data, size, ".input");
       check(smlm::find_reader(smlm::read_head(path), options).read(path, options));
     } catch (const smlm::Error&) {
     }
+    require(open_handles() == 0);
   }
   return 0;
 }

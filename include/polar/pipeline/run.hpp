@@ -7,22 +7,24 @@
 
 #include "polar/core/progress.hpp"
 #include "polar/pipeline/run_config.hpp"
+#include "polar/registration/checkpoint.hpp"
 #include "polar/registration/registration.hpp"
 
 namespace polar {
 
 struct RunFlags {
   bool overwrite = false;  // replace what an earlier run wrote
-  bool resume = false;     // keep a complete result of the same configuration and input
+  bool resume = false;     // keep a complete result of the same computation, continue one that was cut short
 };
 
 struct RunOutcome {
-  bool cancelled = false;            // nothing was written
+  bool cancelled = false;            // no result was written
+  bool resumable = false;            // but a checkpoint
   std::vector<std::string> summary;  // lines for stdout
 };
 
 /// The engine; tests put another one in its place.
-using Engine = std::function<Registration(const Views&, const RegistrationOptions&, Progress&)>;
+using Engine = std::function<Registration(const Views&, const RegistrationOptions&, Progress&, Checkpoint&)>;
 
 /// Checks and locks the output directory first, computes, then writes every file whole, summary.json last: a
 /// directory with summary.json is complete. Throws smlm::Error (see docs/faults.md).

@@ -8,6 +8,7 @@
 #include "polar/core/progress.hpp"
 #include "polar/core/view.hpp"
 #include "polar/latent/options.hpp"
+#include "polar/registration/checkpoint.hpp"
 #include "polar/registration/registration.hpp"
 
 namespace polar {
@@ -32,6 +33,12 @@ bool needs_weights(const RegistrationOptions& options);
 
 /// Registers all views. Never throws for a bad view: that view is not accepted and says why.
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress);
+
+/// The same; leaves its states in `checkpoint` and goes on from those that it finds there, to the same bits
+/// as without a break. A cancelled run returns early and says so in stopped_because. `method: latent` keeps
+/// no states: it begins again.
+Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress,
+                            Checkpoint& checkpoint);
 
 /// The same from poses that are given (template_from_view, one a view) instead of a competition of starts: to
 /// continue elsewhere, or to ask whether a true pose would have scored better than the found one.

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "handle.hpp"
+#include "stored_type.hpp"
 
 namespace smlm::h5 {
 namespace {
@@ -129,6 +130,7 @@ Handle File::State::open_dataset(const std::string& dataset) const {
   const Handle properties(H5Dget_create_plist(object.get()), H5Pclose);
   const Handle type(H5Dget_type(object.get()), H5Tclose);
   if (!properties.valid() || !type.valid()) fail_input(dataset, "its properties cannot be read (damaged?)");
+  if (!convertible(type.get())) fail_input(dataset, "is of a damaged type", "write or copy the file again");
   if (H5Pget_external_count(properties.get()) > 0) {
     fail_input(dataset, "keeps its values in another file, which is never opened",
                "copy the data into the file");

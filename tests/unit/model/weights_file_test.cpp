@@ -9,7 +9,7 @@
 
 #include "model/half.hpp"
 #include "model/parameters.hpp"
-#include "model/sha256.hpp"
+#include "polar/core/sha256.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
 

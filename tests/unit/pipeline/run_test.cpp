@@ -23,7 +23,7 @@ namespace {
 using ::testing::HasSubstr;
 
 // Stands in for the engine: every view accepted where its centre of mass already is.
-Registration stay(const Views& views, const RegistrationOptions&, Progress&) {
+Registration stay(const Views& views, const RegistrationOptions&, Progress&, Checkpoint&) {
   Registration r;
   r.view.resize(views.view.size());
   for (std::size_t i = 0; i < views.view.size(); ++i) {
@@ -100,9 +100,8 @@ TEST_F(Run, RefusesWhatIsThereUnlessTold) {
 
 TEST_F(Run, ResumeKeepsACompleteResultOfTheSameInput) {
   ASSERT_EQ(fault({}), 0);
-  const Engine must_not_run = [](const Views&, const RegistrationOptions&, Progress&) -> Registration {
-    throw std::logic_error("computed again");
-  };
+  const Engine must_not_run = [](const Views&, const RegistrationOptions&, Progress&,
+                                 Checkpoint&) -> Registration { throw std::logic_error("computed again"); };
   EXPECT_EQ(fault({false, true}, must_not_run), 0);
   std::ofstream(directory_.path("data/localisations.csv"), std::ios::app) << "1,1,1,1,1,1,1,1,1,1\n";
   EXPECT_EQ(fault({false, true}, must_not_run), 3);
@@ -149,8 +148,8 @@ TEST_F(Run, CancelledRunsWriteNothing) {
 }
 
 TEST_F(Run, NothingRegisteredIsNumericalAndWritesNothing) {
-  const Engine none = [](const Views& views, const RegistrationOptions& o, Progress& p) {
-    Registration r = stay(views, o, p);
+  const Engine none = [](const Views& views, const RegistrationOptions& o, Progress& p, Checkpoint& c) {
+    Registration r = stay(views, o, p, c);
     for (RegisteredView& v : r.view) {
       v.accepted = false;
       v.reason = "too few localisations";
@@ -163,9 +162,8 @@ TEST_F(Run, NothingRegisteredIsNumericalAndWritesNothing) {
 }
 
 TEST_F(Run, UnusableOutputDirectoriesFailBeforeComputing) {
-  const Engine must_not_run = [](const Views&, const RegistrationOptions&, Progress&) -> Registration {
-    throw std::logic_error("computed");
-  };
+  const Engine must_not_run = [](const Views&, const RegistrationOptions&, Progress&,
+                                 Checkpoint&) -> Registration { throw std::logic_error("computed"); };
   std::ofstream(directory_.path("results")) << "a file";
   EXPECT_EQ(fault({}, must_not_run), 4);
   EXPECT_THAT(message_, HasSubstr("not a directory"));

@@ -1,9 +1,12 @@
 #include "polar/registration/register.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "polar/core/parallel.hpp"
 #include "polar/core/so3.hpp"
@@ -82,6 +85,62 @@ TEST(RegisterViews, givesTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(one.view[i].template_from_view.rotation, two.view[i].template_from_view.rotation) << i;
     EXPECT_EQ(one.view[i].template_from_view.translation, two.view[i].template_from_view.translation) << i;
     EXPECT_EQ(one.view[i].log_likelihood, two.view[i].log_likelihood) << i;
+  }
+}
+
+// Keeps states in memory and, as the progress of the same run, asks to stop once `most` were kept.
+class Interrupting : public Checkpoint, public Progress {
+ public:
+  std::optional<std::string> load(const std::string& name) override {
+    const auto found = kept.find(name);
+    return found == kept.end() ? std::nullopt : std::optional<std::string>(found->second);
+  }
+  void keep(const std::string& name, std::string bytes) override {
+    kept[name] = std::move(bytes);
+    names.insert(name);
+    ++count;
+  }
+  void drop(const std::string& prefix) override {
+    for (auto at = kept.begin(); at != kept.end();)
+      at = at->first.compare(0, prefix.size(), prefix) == 0 ? kept.erase(at) : std::next(at);
+  }
+  bool cancelled() const override { return count >= most; }
+
+  std::map<std::string, std::string> kept;
+  std::set<std::string> names;
+  int count = 0, most = 1 << 30;
+};
+
+TEST(RegisterViews, continuesFromTheStatesItKeepsToTheSameBits) {
+  SimulationOptions o = small(5);
+  o.particles = 12;
+  const Simulated s = simulated(o);
+  RegistrationOptions options;
+  options.starts = {"polar", "imaged"};
+  Interrupting whole;
+  const Registration expected = register_views(s.views, options, whole, whole);
+  EXPECT_THAT(whole.names,
+              ::testing::IsSupersetOf({"start 0", "start 1", "finalist 0/rounds", "winner", "fused"}));
+  EXPECT_EQ(whole.kept.size(), 2u);  // winner and fused supersede all others
+  for (int most = 1; most <= whole.count; most += 1 + most / 3) {
+    Interrupting run;
+    run.most = most;
+    register_views(s.views, options, run, run);
+    ASSERT_TRUE(run.cancelled()) << most;
+    run.most = 1 << 30;
+    const Registration r = register_views(s.views, options, run, run);
+    ASSERT_EQ(r.stopped_because, expected.stopped_because) << most;
+    ASSERT_EQ(r.starts.size(), expected.starts.size());
+    for (std::size_t k = 0; k < r.starts.size(); ++k)
+      EXPECT_EQ(r.starts[k].final_held_out_log_likelihood, expected.starts[k].final_held_out_log_likelihood);
+    EXPECT_EQ(r.fused.centre, expected.fused.centre) << most;
+    for (std::size_t i = 0; i < r.view.size(); ++i) {
+      EXPECT_EQ(r.view[i].template_from_view.rotation, expected.view[i].template_from_view.rotation) << most;
+      EXPECT_EQ(r.view[i].template_from_view.translation, expected.view[i].template_from_view.translation)
+          << most;
+      EXPECT_EQ(r.view[i].covariance, expected.view[i].covariance) << most;
+      EXPECT_EQ(r.view[i].margin, expected.view[i].margin) << most;
+    }
   }
 }
 

@@ -58,6 +58,33 @@ TEST_F(H5FileTest, TablesAreReadByFieldName) {
   EXPECT_EQ(test::error_of([&] { file.read_member<double>("/locs", "x", 39999, 2); }).fault(), Fault::input);
 }
 
+// Found by fuzzing: HDF5 1.10 believes such types, and converting from them writes past its buffers.
+TEST_F(H5FileTest, FieldsOfImpossibleTypesAreRefused) {
+  // What follows a field's name: its offset in the record at 0, then of its type the size at 36, the
+  // precision in bits at 42, and of a real the widths of exponent and mantissa at 45 and 47.
+  const auto with_byte = [&](std::size_t position, char was, char value) {
+    File file = File::create(path("t.h5"));
+    file.write_table("/locs", {table_column("first", std::vector<float>{1, 2}),
+                               table_column("second", std::vector<float>{3, 4})});
+    file.close();
+    std::ifstream in(path("t.h5"), std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    const std::string name("second\0\0", 8);
+    char& byte = bytes.at(bytes.find(name) + name.size() + position);
+    EXPECT_EQ(byte, was) << position;
+    byte = value;
+    write("t.h5", bytes);
+    return File::open(path("t.h5")).read_member<double>("/locs", "second", 0, 2);
+  };
+  EXPECT_THAT(with_byte(0, 4, 4), ElementsAre(3, 4));
+  for (const char offset : {'\0', '\3', '\5', '\100'})
+    EXPECT_THAT(test::error_of([&] { with_byte(0, 4, offset); }).what(), HasSubstr("damaged"));
+  EXPECT_THAT(test::error_of([&] { with_byte(36, 4, 'd'); }).what(), HasSubstr("damaged"));
+  EXPECT_THAT(test::error_of([&] { with_byte(42, 32, 94); }).what(), HasSubstr("of a damaged type"));
+  EXPECT_THAT(test::error_of([&] { with_byte(45, 8, 90); }).what(), HasSubstr("of a damaged type"));
+  EXPECT_THAT(test::error_of([&] { with_byte(47, 23, 90); }).what(), HasSubstr("of a damaged type"));
+}
+
 // ParaView 5.11 refuses VTKHDF files whose Type is of variable length, UTF-8 or one byte longer.
 TEST_F(H5FileTest, StringAttributesAreFixedAsciiWithoutATerminator) {
   {

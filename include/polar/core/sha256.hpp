@@ -1,4 +1,4 @@
-// SHA-256 (FIPS 180-4), to name the weights that a result came from.
+// SHA-256 (FIPS 180-4): names weights, and tells a whole checkpoint from a damaged one.
 #pragma once
 
 #include <cstddef>

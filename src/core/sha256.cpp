@@ -1,4 +1,4 @@
-#include "model/sha256.hpp"
+#include "polar/core/sha256.hpp"
 
 #include <array>
 #include <cstdint>
