@@ -41,11 +41,12 @@ int open_retrying(const std::string& path, int flags, mode_t mode = 0) {
   return fd;
 }
 
-void sync(const std::string& path, int flags) {
+// Messages call it `shown`.
+void sync(const std::string& path, int flags, const std::string& shown) {
   Descriptor file{open_retrying(path, flags)};
-  if (file.fd < 0) fail(path, "opening it to sync", errno);
-  if (::fsync(file.fd) != 0) fail(path, "fsync", errno);
-  if (file.close() != 0) fail(path, "close", errno);
+  if (file.fd < 0) fail(shown, "opening it to sync", errno);
+  if (::fsync(file.fd) != 0) fail(shown, "fsync", errno);
+  if (file.close() != 0) fail(shown, "close", errno);
 }
 
 }  // namespace
@@ -68,10 +69,10 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
-  sync(temporary_path_, O_RDONLY);
+  sync(temporary_path_, O_RDONLY, final_path_);
   if (std::rename(temporary_path_.c_str(), final_path_.c_str()) != 0) fail(final_path_, "rename", errno);
   committed_ = true;
-  sync(folder_of(final_path_), O_RDONLY | O_DIRECTORY);
+  sync(folder_of(final_path_), O_RDONLY | O_DIRECTORY, folder_of(final_path_));
 }
 
 void write_file_atomically(const std::string& path, std::string_view content) {

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -65,6 +66,11 @@ int main(int argc, char** argv) {
     return report("out of memory: use fewer localisations, a coarser output.voxel_nm or a larger machine",
                   kResource);
   } catch (const std::exception& e) {
+    // Threads are made by a library that says so only in words.
+    if (std::strstr(e.what(), "pthread_create") != nullptr)
+      return report(
+          "no thread could be started: raise the limit on memory or processes, or use fewer --threads",
+          kResource);
     return report(std::string("unexpected: ") + e.what() + ": please report this", 1);
   }
 }

@@ -197,6 +197,15 @@ void write_resolution(File& file, const ResolutionReport& r) {
   write_half_maps(file, "/resolution/noise", r.noise);
 }
 
+template <class T>
+T one_number(const File& file, const std::string& object, const char* name) {
+  const std::vector<T> values = file.read_attribute<T>(object, name);
+  if (values.size() != 1)
+    throw smlm::Error(smlm::Fault::input, file.path() + ":" + object,
+                      std::string(name) + " is not one number", "run again");
+  return values[0];
+}
+
 std::string one_string(const File& file, const char* name) {
   const std::vector<std::string> values = file.read_strings(name);
   return values.empty() ? std::string() : values.front();
@@ -224,8 +233,7 @@ ResultRecord read_result_file(const std::string& path) {
   const File file = File::open(path);
   if (!file.has_attribute("/", "format") || file.read_string_attribute("/", "format") != kFormat)
     throw smlm::Error(smlm::Fault::input, path, "not a result of polar run", "give a results.h5");
-  const auto version = file.read_attribute<std::int32_t>("/", "format_version");
-  if (version.size() != 1 || version[0] > kFormatVersion)
+  if (one_number<std::int32_t>(file, "/", "format_version") > kFormatVersion)
     throw smlm::Error(smlm::Fault::input, path, "written by a later version", "update polar");
   ResultRecord record;
   smlm::LocalisationTable& t = record.superparticle;
@@ -244,9 +252,14 @@ ResultRecord read_result_file(const std::string& path) {
     const float* c = &covariance[6 * i];
     t.covariance_nm2.push_back({c[0], c[1], c[2], c[3], c[4], c[5]});
   }
-  t.planar = file.read_attribute<std::uint8_t>("/superparticle", "planar").at(0) != 0;
+  t.planar = one_number<std::uint8_t>(file, "/superparticle", "planar") != 0;
   t.particle_names = file.read_strings("/poses/particle");
   t.files = file.read_strings("/input/file");
+  for (std::size_t i = 0; i < n; ++i)
+    if (t.particle[i] < -1 || t.particle[i] >= static_cast<std::int64_t>(t.particle_names.size()) ||
+        t.source_file[i] >= t.files.size())
+      throw smlm::Error(smlm::Fault::input, path + ":/superparticle",
+                        "names a particle or file that is not there", "run again");
   const auto names = file.read_strings("/input/column_name"), units = file.read_strings("/input/column_unit");
   for (std::size_t c = 0; c < names.size() && c < units.size(); ++c) {
     t.extra.emplace_back();
@@ -254,12 +267,17 @@ ResultRecord read_result_file(const std::string& path) {
     t.extra.back().unit = units[c];
     t.extra.back().values = file.read<double>("/superparticle/columns/" + std::to_string(c));
     if (file.exists(labels_of(c))) t.extra.back().labels = file.read_strings(labels_of(c));
+    for (const double value : t.extra.back().values)
+      if (!t.extra.back().labels.empty() && !std::isnan(value) &&
+          !(value >= 0 && value < static_cast<double>(t.extra.back().labels.size())))
+        throw smlm::Error(smlm::Fault::input, path + ":/superparticle/columns/" + std::to_string(c),
+                          "names a text that is not there", "run again");
     if (t.extra.back().values.size() != n)
       throw smlm::Error(smlm::Fault::input, path + ":/superparticle", "columns of different lengths",
                         "run again");
   }
   const auto calibration = [&](const char* name) {
-    return file.read_attribute<double>("/run/calibration", name).at(0);
+    return one_number<double>(file, "/run/calibration", name);
   };
   record.render.lateral_factor = calibration("lateral_factor");
   record.render.axial_factor = calibration("axial_factor");
@@ -272,7 +290,7 @@ ResultRecord read_result_file(const std::string& path) {
   const auto k = static_cast<Eigen::Index>(weight.size());
   record.sites.centre_nm = Eigen::Map<const Eigen::Matrix3Xd>(centre.data(), 3, k);
   record.sites.weight = Eigen::Map<const Eigen::VectorXd>(weight.data(), k);
-  record.sites.width_nm = file.read_attribute<double>("/template", "width_nm").at(0);
+  record.sites.width_nm = one_number<double>(file, "/template", "width_nm");
   record.program = one_string(file, "/run/program");
   record.configuration = one_string(file, "/run/configuration");
   record.input_hash = one_string(file, "/run/input_hash");

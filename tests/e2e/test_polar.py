@@ -184,7 +184,7 @@ class FullDisk(PolarCase):
         self.ok("run", config)
         results = self.folder / "results"
         before = (results / "results.h5").read_bytes()
-        self.fails(4, "results.h5", "run", config, "--overwrite", **self.limited(5000))
+        self.fails(4, "results.h5", "run", config, "--overwrite", **self.limited(40000))
         self.assertEqual((results / "results.h5").read_bytes(), before)
         self.assertFalse((results / "summary.json").exists())  # so the directory does not count as complete
         self.assertEqual([path.name for path in results.iterdir() if path.name.endswith(".tmp")], [])
@@ -198,6 +198,37 @@ class FullDisk(PolarCase):
                                   stderr=subprocess.PIPE, text=True, timeout=60)
         self.assertEqual(done.returncode, 4)
         self.assertIn("error: stdout: could not be written", done.stderr)
+
+
+@unittest.skipUnless("FAULTY_IO" in os.environ, "faulty_io is not built")
+class FaultyIo(PolarCase):
+    """The n-th call fails, for every n until a run passes clean."""
+    def test_every_call_that_fails_is_an_error_and_leaves_whole_files(self):
+        self.simulate(SMALL)
+        config = self.run_config(more="registration: {starts: [imaged]}\noutput: {formats: [csv], preview: false}\n")
+        self.ok("run", config)
+        whole = {name: (self.folder / "results" / name).read_bytes() for name in ("poses.csv", "aligned.csv")}
+        for fault in ("fsync", "rename", "write"):
+            nth = 1
+            while self.failing(config, fault, nth, whole):
+                nth += 1
+            self.assertGreater(nth, 3, fault)
+        for fault in ("short", "interrupted"):
+            self.assertFalse(self.failing(config, fault, 2, whole))
+
+    def failing(self, config, fault, nth, whole):
+        env = {"LD_PRELOAD": os.environ["FAULTY_IO"], "FAULT": fault, "NTH": str(nth)}
+        done = self.polar("run", config, "--overwrite", "--quiet", env=env)
+        for name, content in whole.items():
+            self.assertEqual((self.folder / "results" / name).read_bytes(), content, (fault, nth, name))
+        left = {path.name for path in (self.folder / "results").iterdir()}
+        self.assertLessEqual(left, {*whole, "summary.json", "checkpoint.1", "checkpoint.2"}, (fault, nth))
+        if done.returncode == 0:
+            self.assertIn("summary.json", left)
+            return False
+        self.assertEqual(done.returncode, 4, (fault, nth, done.stderr))
+        self.assertRegex(done.stderr, r"\Aerror: \S*/results(/\w[^\n]*)?: [^\n]+\n\Z")
+        return True
 
 
 class ClosedStreams(PolarCase):
