@@ -7,6 +7,7 @@
 #include "finish.hpp"
 #include "latent_method.hpp"
 #include "polar/core/symmetry_group.hpp"
+#include "polar_start.hpp"
 #include "smlm/error.hpp"
 #include "starts.hpp"
 #include "symmetry_stage.hpp"
@@ -159,12 +160,14 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
   if (options.method == "latent") {
     Stopwatch watch;
     Registration out = latent_method(make_problems(views, options.seed).plain, options, progress);
+    out.weights_sha256 = weights_sha256(options);
     out.timings.push_back({"latent", watch.lap()});
     return out;
   }
   Run run(views, options, progress);
   StartsOutcome starts = compete(run.problems, options, run.grid, run.rounds, progress);
   run.out.starts = starts.report;
+  run.out.weights_sha256 = weights_sha256(options);
   run.timed("starts");
   if (!starts.finished) {
     run.out.stopped_because = "cancelled";
