@@ -4,7 +4,6 @@
 
 #include "mask.hpp"
 #include "polar/core/parallel.hpp"
-#include "polar/latent/template.hpp"
 
 namespace polar {
 
@@ -28,16 +27,16 @@ double believed(double far) { return far < kNegligible ? 0 : kBelieved * far; }
 
 }  // namespace
 
-void estimate_degradation(const Autoencoder& model, const JointState& state, const LatentOptions& options,
+void estimate_degradation(const Autoencoder& model, const Eigen::Matrix3Xf& points,
+                          const std::vector<Pose>& view_from_template, const LatentOptions& options,
                           LatentViews& views) {
   if (options.visibility > 0 && options.outlier_fraction >= 0) return;
-  const Eigen::Matrix3Xf points = template_points(model, state.z, views.planar);
   parallel_for(views.view.size(), [&](std::size_t i) {
     LatentView& view = views.view[i];
     if (view.empty()) return;
     LatentView whole = view;
     set_degradation(whole, i, model.decoded_points(), 1, 0, options);
-    const Eigen::Matrix3Xf cloud = simulated_view(whole, points, state.view_from_template[i]);
+    const Eigen::Matrix3Xf cloud = simulated_view(whole, points, view_from_template[i]);
     const double hidden = believed(far_share(nearest_distances(cloud, view.points)));
     const double foreign = believed(far_share(nearest_distances(view.points, cloud)));
     set_degradation(

@@ -6,8 +6,10 @@
 
 namespace polar {
 
-/// Sets the ratios that `options` leave to be estimated, and the draws that depend on them.
-void estimate_degradation(const Autoencoder& model, const JointState& state, const LatentOptions& options,
+/// Under the template `points`. Sets the ratios that `options` leave to be estimated, and the draws that
+/// depend on them.
+void estimate_degradation(const Autoencoder& model, const Eigen::Matrix3Xf& points,
+                          const std::vector<Pose>& view_from_template, const LatentOptions& options,
                           LatentViews& views);
 
 }  // namespace polar

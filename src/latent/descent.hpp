@@ -50,11 +50,15 @@ DescendedPose descend_pose(const Autoencoder& model, const LatentView& view, boo
                            const Eigen::Matrix3Xf& template_points, const Pose& start,
                            const LatentOptions& options, int most_evaluations);
 
-struct JointState {
-  Eigen::VectorXf z;                     // the template's latent vector
-  std::vector<Pose> view_from_template;  // all views
-  std::vector<double> loss;              // L_i of each
-  double total = 0;                      // their sum plus lambda R(z)
+/// Poses of all views under one template, with L_i of each.
+struct PosedViews {
+  std::vector<Pose> view_from_template;
+  std::vector<double> loss;
+};
+
+struct JointState : PosedViews {
+  Eigen::VectorXf z;  // the template's latent vector
+  double total = 0;   // the losses' sum plus lambda R(z)
 };
 
 /// Template and poses together, in place; ends with the best state met. Returns the number of steps.

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 
+#include "crops.hpp"
 #include "mask.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/flames/local_minima.hpp"
@@ -15,7 +18,9 @@ constexpr int kFastRotations = 1152, kFastPlanar = 180;
 constexpr std::size_t kTile = 256;       // rotations whose encodings are held at a time
 constexpr std::size_t kViewBlock = 512;  // views whose coarse losses are held at a time
 constexpr int kJudged = 3;               // times as many minima are judged exactly as are kept
-constexpr int kShifts = 2;               // centring steps of a candidate under masks
+constexpr double kCropped = 0.95;  // of the template that a class of views shows on the mean: crops are tried
+constexpr int kCrops = 12, kCroppedPoints = 128;
+constexpr int kShifts = 2;  // centring steps of a candidate under masks
 
 // Squared distance where the template's entries lie above the view's, and below. A maximum over fewer points
 // is lower, so a cropped view may lie below its template, and one with outliers above.
@@ -40,36 +45,79 @@ float distance(const float* template_latent, const Eigen::VectorXf& view_latent,
   return weight.above * above + weight.below * below;
 }
 
-// Coarse losses of `views` (all of class `c`) over the grid, one row a view.
-std::vector<std::vector<float>> coarse(const Autoencoder& model, const LatentViews& views,
-                                       const NoiseClass& c, const std::vector<int>& which,
-                                       const SearchGrid& grid, const Eigen::Matrix3f& turn,
-                                       const Eigen::Matrix3Xf& template_points,
-                                       const std::vector<Pose>& pose) {
-  // t is fixed: instead of the template the view is shifted, so that one encoding serves every view.
+// What a class of views is compared with: the template as it is, or under crops.
+std::vector<Crop> versions(const LatentViews& views, const NoiseClass& c, const Eigen::Matrix3Xf& drawn) {
+  double visible = 0;
+  for (const int i : c.views)
+    visible += views.view[static_cast<std::size_t>(i)].visibility / static_cast<double>(c.views.size());
+  if (visible <= kCropped) return plane_crops(drawn, visible, kCrops, kCroppedPoints, views.planar);
+  Crop whole;
+  whole.points = drawn;
+  whole.kept.resize(static_cast<std::size_t>(drawn.cols()));
+  std::iota(whole.kept.begin(), whole.kept.end(), 0);
+  return {whole};
+}
+
+// A view as the versions show it, and where its centre was.
+struct Wanted {
+  Eigen::VectorXf latent;
+  Eigen::Vector3f centre;
+};
+
+// t is fixed: instead of the template the view is shifted, so that one encoding serves every view. Crops
+// have their own centres, and views are then taken about theirs.
+Wanted wanted_of(const Autoencoder& model, const LatentView& view, const Pose& pose, bool cropped) {
+  const Eigen::Vector3f t = pose.translation.cast<float>();
+  if (!cropped) return {t.isZero(0) ? view.encoded : model.encode(view.points.colwise() - t).latent, t};
+  const Eigen::Vector3f centre = view.points.rowwise().mean();
+  const Eigen::Index n = std::min<Eigen::Index>(kCroppedPoints, view.points.cols());
+  return {model.encode(view.points.leftCols(n).colwise() - centre).latent, centre};
+}
+
+// Coarse losses of one view over the grid, with the version of the template that each is due to.
+struct Coarse {
+  std::vector<float> cost;
+  std::vector<std::uint8_t> version;
+  Eigen::Vector3f centre;
+};
+
+std::vector<Coarse> coarse(const Autoencoder& model, const LatentViews& views, const NoiseClass& c,
+                           const std::vector<Crop>& versions, const std::vector<int>& which,
+                           const SearchGrid& grid, const Eigen::Matrix3f& turn,
+                           const std::vector<Pose>& pose) {
+  const bool cropped = versions.size() > 1;
+  const std::size_t rotations = grid.rotation.size(), n = versions.size();
   std::vector<Eigen::VectorXf> wanted(which.size());
+  std::vector<Coarse> out(which.size());
   parallel_for(which.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(which[k]);
-    const Eigen::Vector3f t = pose[i].translation.cast<float>();
-    wanted[k] = t.isZero(0) ? views.view[i].encoded : model.encode(views.view[i].points.colwise() - t).latent;
+    Wanted w = wanted_of(model, views.view[i], pose[i], cropped);
+    wanted[k] = std::move(w.latent);
+    out[k] = {std::vector<float>(rotations, INFINITY), std::vector<std::uint8_t>(rotations), w.centre};
   });
-  const std::size_t rotations = grid.rotation.size();
-  const Eigen::Matrix3Xf drawn = columns(template_points, c.source);
-  std::vector<std::vector<float>> cost(which.size(), std::vector<float>(rotations));
-  for (std::size_t first = 0; first < rotations; first += kTile) {
-    const std::size_t tile = std::min(kTile, rotations - first);
+  std::vector<Eigen::Matrix3Xf> noise;
+  for (const Crop& v : versions) noise.push_back(columns(c.noise, v.kept));
+  for (std::size_t first = 0; first < rotations * n; first += kTile) {
+    const std::size_t tile = std::min(kTile, rotations * n - first);
     Eigen::MatrixXf latent(model.latent_size(), static_cast<Eigen::Index>(tile));
     parallel_for(tile, [&](std::size_t l) {
+      const std::size_t at = (first + l) / n, v = (first + l) % n;
       latent.col(static_cast<Eigen::Index>(l)) =
-          model.encode(grid.rotation[first + l] * turn * drawn + c.noise).latent;
+          model.encode(grid.rotation[at] * turn * versions[v].points + noise[v]).latent;
     });
     parallel_for(which.size(), [&](std::size_t k) {
-      const OneSided weight = weights_of(views.view[static_cast<std::size_t>(which[k])]);
-      for (std::size_t l = 0; l < tile; ++l)
-        cost[k][first + l] = distance(latent.col(static_cast<Eigen::Index>(l)).data(), wanted[k], weight);
+      OneSided weight = weights_of(views.view[static_cast<std::size_t>(which[k])]);
+      if (cropped) weight.above = 1;  // a crop hides what the view does not show
+      for (std::size_t l = 0; l < tile; ++l) {
+        const std::size_t at = (first + l) / n;
+        const float d = distance(latent.col(static_cast<Eigen::Index>(l)).data(), wanted[k], weight);
+        if (!(d < out[k].cost[at])) continue;
+        out[k].cost[at] = d;
+        out[k].version[at] = static_cast<std::uint8_t>((first + l) % n);
+      }
     });
   }
-  return cost;
+  return out;
 }
 
 // Under masks the visible part, not the whole, lies where the view is: a few centring steps of what is kept.
@@ -98,18 +146,24 @@ std::vector<std::vector<Minimum>> flames(const Autoencoder& model, const LatentV
                                          const Eigen::Matrix3f& turn, const Eigen::Matrix3Xf& template_points,
                                          const std::vector<Pose>& pose, int most) {
   std::vector<std::vector<Minimum>> minima(views.view.size());
-  for (const NoiseClass& c : classes)
+  for (const NoiseClass& c : classes) {
+    const std::vector<Crop> templates = versions(views, c, columns(template_points, c.source));
     for (std::size_t first = 0; first < c.views.size(); first += kViewBlock) {
       const auto begin = c.views.begin() + static_cast<std::ptrdiff_t>(first);
       const std::vector<int> block(
           begin, begin + static_cast<std::ptrdiff_t>(std::min(kViewBlock, c.views.size() - first)));
-      const auto cost = coarse(model, views, c, block, grid, turn, template_points, pose);
+      const auto found_coarsely = coarse(model, views, c, templates, block, grid, turn, pose);
       parallel_for(block.size(), [&](std::size_t k) {
         const auto i = static_cast<std::size_t>(block[k]);
         std::vector<Minimum>& found = minima[i];
-        for (const int l : local_minima(cost[k], grid.graph, kJudged * most)) {
-          Pose at = pose[i];
-          at.rotation = (grid.rotation[static_cast<std::size_t>(l)] * turn).cast<double>();
+        const Coarse& coarsely = found_coarsely[k];
+        for (const int l : local_minima(coarsely.cost, grid.graph, kJudged * most)) {
+          const auto node = static_cast<std::size_t>(l);
+          const Eigen::Matrix3f rotation = grid.rotation[node] * turn;
+          Pose at;
+          at.rotation = rotation.cast<double>();
+          at.translation =
+              (coarsely.centre - rotation * templates[coarsely.version[node]].centre).cast<double>();
           at = centred(views.view[i], template_points, at);
           found.push_back({at, view_loss(model, views.view[i], template_points, at, Derive::nothing).loss});
         }
@@ -118,6 +172,7 @@ std::vector<std::vector<Minimum>> flames(const Autoencoder& model, const LatentV
         if (found.size() > static_cast<std::size_t>(most)) found.resize(static_cast<std::size_t>(most));
       });
     }
+  }
   return minima;
 }
 

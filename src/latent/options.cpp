@@ -10,6 +10,8 @@ std::vector<std::string> violations(const LatentOptions& o) {
   require(o.search == "fast" || o.search == "exhaustive", "search must be fast or exhaustive");
   require(o.optimizer == "levenberg_marquardt" || o.optimizer == "adamw",
           "optimizer must be levenberg_marquardt or adamw");
+  require(o.template_kind == "fused" || o.template_kind == "decoded",
+          "latent.template must be fused or decoded");
   require(o.noise == "per_localisation" || o.noise == "common" || o.noise == "none",
           "latent.noise must be per_localisation, common or none");
   require(o.localisations >= 16, "latent.localisations must be at least 16");

@@ -191,6 +191,7 @@ nlohmann::json summary_json(const Results& r, const std::vector<std::string>& li
                             {"files", files},
                             {"text", lines}};
   if (g.symmetry) summary["symmetry"] = pipeline::symmetry_json(*g.symmetry, r.normalisation.scale_nm);
+  if (!g.weights_sha256.empty()) summary["weights_sha256"] = g.weights_sha256;
   if (r.resolution)
     summary["resolution"] = {{"halves", half_maps_json(r.resolution->data)},
                              {"noise", half_maps_json(r.resolution->noise)},

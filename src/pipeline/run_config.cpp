@@ -46,6 +46,7 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("symmetry", o.symmetry);
     s.field("weights", o.weights);
     s.section("latent", [&](auto& latent) {
+      latent.field("template", o.latent.template_kind);
       latent.field("noise", o.latent.noise);
       latent.field("matched_counts", o.latent.matched_counts);
       latent.field("localisations", o.latent.localisations);

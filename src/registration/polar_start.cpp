@@ -27,6 +27,10 @@ std::unique_ptr<Autoencoder> autoencoder(const RegistrationOptions& options) {
   return make_pointnet(read_weights(weights_path(options.weights)).weights);
 }
 
+std::string weights_sha256(const RegistrationOptions& options) {
+  return needs_weights(options) ? read_weights(weights_path(options.weights)).sha256 : "";
+}
+
 LatentOptions latent_options(const RegistrationOptions& options) {
   LatentOptions latent = options.latent;
   latent.seed = options.seed;

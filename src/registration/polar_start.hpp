@@ -14,6 +14,9 @@ namespace polar {
 /// The autoencoder that `options` name. Throws smlm::Error where its file is missing or damaged.
 std::unique_ptr<Autoencoder> autoencoder(const RegistrationOptions& options);
 
+/// The hash that names those weights, empty where no autoencoder takes part.
+std::string weights_sha256(const RegistrationOptions& options);
+
 /// The latent options with the seed, search and optimizer of the registration.
 LatentOptions latent_options(const RegistrationOptions& options);
 

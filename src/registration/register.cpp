@@ -7,6 +7,7 @@
 #include "finish.hpp"
 #include "latent_method.hpp"
 #include "polar/core/symmetry_group.hpp"
+#include "polar_start.hpp"
 #include "smlm/error.hpp"
 #include "starts.hpp"
 #include "states.hpp"
@@ -190,6 +191,7 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
   if (options.method == "latent") {
     Stopwatch watch;
     Registration out = latent_method(make_problems(views, options.seed).plain, options, progress);
+    out.weights_sha256 = weights_sha256(options);
     out.timings.push_back({"latent", watch.lap()});
     return out;
   }
@@ -203,6 +205,7 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
     keep(checkpoint, "winner", starts);
   }
   run.out.starts = starts.report;
+  run.out.weights_sha256 = weights_sha256(options);
   return from_state(run, options, std::move(starts.winner));
 }
 

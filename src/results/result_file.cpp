@@ -141,6 +141,7 @@ void write_run(File& file, const Results& r) {
   file.write_strings("/run/libraries", r.provenance.libraries);
   file.write_strings("/run/configuration", {r.provenance.configuration});
   file.write_strings("/run/input_hash", {r.provenance.input_hash});
+  if (!g.weights_sha256.empty()) file.write_string_attribute("/run", "weights_sha256", g.weights_sha256);
   file.write_attribute("/run", "seed", r.provenance.seed);
   file.write_attribute("/run", "rounds", static_cast<std::int32_t>(g.rounds));
   file.write_attribute("/run", "converged", static_cast<std::uint8_t>(g.converged ? 1 : 0));

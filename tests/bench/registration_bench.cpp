@@ -224,6 +224,7 @@ int main(int argc, char** argv) {
   app.add_option("--optimizer", options.optimizer, "levenberg_marquardt | adamw");
   app.add_option("--visibility", options.latent.visibility, "of the latent registration");
   app.add_option("--outliers", options.latent.outlier_fraction, "of the latent registration");
+  app.add_option("--template", options.latent.template_kind, "of the latent registration: fused | decoded");
   app.add_option("--noise", options.latent.noise, "per_localisation | common | none");
   app.add_option("--localisations", options.latent.localisations, "of a view in the latent registration");
   app.add_option("--rotations", options.latent.rotations, "of the latent registration's grid");

@@ -25,6 +25,7 @@ class Latent(PolarCase):
         self.assertEqual(summary["starts"][0]["name"], "polar")
         self.assertIn(summary["rounds"], (1, 2))
         self.assertTrue((folder / "results.h5").exists())
+        self.assertRegex(summary["weights_sha256"], "^[0-9a-f]{64}$")
 
     def test_missing_weights_are_a_usage_error_that_names_the_key(self):
         self.simulate(ORIGAMI)

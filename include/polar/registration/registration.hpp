@@ -62,6 +62,7 @@ struct Registration {
   bool converged = false;
   std::string stopped_because = "never ran";
   std::vector<std::string> warnings;
+  std::string weights_sha256;  // of the autoencoder, where it took part; else empty
   struct Timing {
     std::string stage;
     double seconds = 0;

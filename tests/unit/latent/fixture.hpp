@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "polar/core/pose.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 #include "polar/core/view.hpp"

@@ -58,6 +58,15 @@ TEST(RegisterLatent, findsAllViewsOfAnAsymmetricShape) {
   for (const LatentPose& v : r.view) EXPECT_GT(v.covariance.diagonal().minCoeff(), 0);
 }
 
+TEST(RegisterLatent, findsThemWithADecodedTemplateToo) {
+  const fixture::Posed p = fixture::posed_views(12, 300, 0.02f, 0.06f, 3);
+  LatentOptions options = small();
+  options.template_kind = "decoded";
+  options.localisations = 300;
+  const std::vector<double> error = pair_errors(registered(p.views, options), p.view_from_structure);
+  EXPECT_GE(recall(error, 10), 0.8);
+}
+
 TEST(RegisterLatent, turnsWithItsInput) {
   fixture::Posed p = fixture::posed_views(12, 600, 0.02f, 0.02f, 5);
   const LatentRegistration before = registered(p.views, small());

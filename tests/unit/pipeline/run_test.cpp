@@ -131,6 +131,20 @@ TEST_F(Run, ResolutionOfHalvesIsRecordedAndPartOfTheComputation) {
   EXPECT_THROW(config(), smlm::Error);
 }
 
+TEST_F(Run, NamesTheWeightsThatTookPartAndNoOthers) {
+  ASSERT_EQ(fault({}), 0);
+  EXPECT_THAT(content(out("summary.json")), ::testing::Not(HasSubstr("weights_sha256")));
+  const Engine with_weights = [](const Views& views, const RegistrationOptions& options, Progress& progress) {
+    Registration r = stay(views, options, progress);
+    r.weights_sha256 = std::string(64, 'a');
+    return r;
+  };
+  ASSERT_EQ(fault({true, false}, with_weights), 0);
+  EXPECT_EQ(nlohmann::json::parse(content(out("summary.json")))["weights_sha256"], std::string(64, 'a'));
+  EXPECT_EQ(smlm::h5::File::open(out("results.h5")).read_string_attribute("/run", "weights_sha256"),
+            std::string(64, 'a'));
+}
+
 TEST_F(Run, OverwriteLeavesNothingOfTheEarlierRun) {
   ASSERT_EQ(fault({}), 0);
   std::ofstream(out("mine.txt")) << "kept";

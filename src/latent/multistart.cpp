@@ -1,0 +1,94 @@
+#include "multistart.hpp"
+
+#include <algorithm>
+
+#include "polar/core/constants.hpp"
+#include "polar/core/parallel.hpp"
+#include "polar/core/rng.hpp"
+#include "polar/core/so3.hpp"
+
+namespace polar {
+
+namespace {
+
+constexpr std::uint32_t kTurnStage = 54;
+// Evaluations of one start: a few tell the basins apart, and only the best few are followed to their end.
+constexpr int kFirstEvaluations = 3, kLastEvaluations = 7;
+constexpr std::size_t kFollowed = 3;
+constexpr int kAdamEvaluations = 1000;  // its plateau usually ends it earlier
+
+bool less(const DescendedPose& a, const DescendedPose& b) { return a.loss < b.loss; }
+
+}  // namespace
+
+Multistart::Multistart(const Autoencoder& model, const LatentOptions& options, bool planar, std::size_t views)
+    : model_(model),
+      options_(options),
+      planar_(planar),
+      grid_(latent_grid(options, planar)),
+      second_(views, DescendedPose{Pose(), -1, 0}) {}
+
+std::vector<std::vector<Minimum>> Multistart::minima(const LatentViews& views, const Eigen::Matrix3Xf& points,
+                                                     const PosedViews& state, int round, int most) const {
+  KeyedRandom random(options_.seed, static_cast<std::uint64_t>(round), kTurnStage);
+  const Eigen::Matrix3f turn = planar_ ? Eigen::Matrix3f(Eigen::Matrix3f::Identity())
+                                       : Eigen::Matrix3f(random.rotation().cast<float>());
+  return flames(model_, views, noise_classes(views, options_), grid_, turn, points, state.view_from_template,
+                most);
+}
+
+std::vector<DescendedPose> Multistart::descended(const LatentView& view, const Eigen::Matrix3Xf& points,
+                                                 std::vector<Pose> starts) const {
+  std::vector<DescendedPose> found;
+  const auto descend = [&](const Pose& start, int evaluations) {
+    return descend_pose(model_, view, planar_, points, start, options_, evaluations);
+  };
+  const bool paper = options_.optimizer == "adamw";
+  for (const Pose& start : starts)
+    found.push_back(descend(start, paper ? kAdamEvaluations : kFirstEvaluations));
+  if (paper) return found;
+  std::stable_sort(found.begin(), found.end(), less);
+  for (std::size_t k = 0; k < std::min(kFollowed, found.size()); ++k)
+    found[k] = descend(found[k].view_from_template, kLastEvaluations);
+  return found;
+}
+
+int Multistart::improve(const LatentViews& views, const Eigen::Matrix3Xf& points, int round, bool present_too,
+                        PosedViews& state) {
+  const auto candidates = minima(views, points, state, round, options_.basins);
+  std::vector<char> escaped(views.view.size(), 0);
+  parallel_for(views.view.size(), [&](std::size_t i) {
+    if (views.view[i].empty()) return;
+    std::vector<Pose> starts;
+    for (const Minimum& m : candidates[i]) starts.push_back(m.view_from_template);
+    if (present_too) starts.push_back(state.view_from_template[i]);
+    escaped[i] = update(i, descended(views.view[i], points, std::move(starts)), state) ? 1 : 0;
+  });
+  return static_cast<int>(std::count(escaped.begin(), escaped.end(), 1));
+}
+
+bool Multistart::update(std::size_t i, const std::vector<DescendedPose>& found, PosedViews& state) {
+  const auto best = std::min_element(found.begin(), found.end(), less);
+  if (best == found.end()) return false;
+  const DescendedPose current{state.view_from_template[i], state.loss[i], 0};
+  const double limit = options_.escape_deg * kRadiansPerDegree;
+  const auto apart = [&](const DescendedPose& a, const DescendedPose& b) {
+    return geodesic_angle(a.view_from_template.rotation, b.view_from_template.rotation) >= limit;
+  };
+  const bool better = best->loss <= current.loss;
+  const bool escaped = better && apart(*best, current);  // s, eq. 15
+  if (better) {                                          // u, eq. 14
+    state.view_from_template[i] = best->view_from_template;
+    state.loss[i] = best->loss;
+  }
+  const DescendedPose kept = better ? *best : current;
+  second_[i] = {kept.view_from_template, -1, 0};
+  const auto consider = [&](const DescendedPose& p) {
+    if (apart(p, kept) && (second_[i].loss < 0 || p.loss < second_[i].loss)) second_[i] = p;
+  };
+  for (const DescendedPose& p : found) consider(p);
+  consider(current);
+  return escaped;
+}
+
+}  // namespace polar
