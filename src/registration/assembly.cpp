@@ -17,8 +17,8 @@ constexpr std::size_t kProbes = 4;       // views whose matches the winner is he
 constexpr std::size_t kProbedWith = 48;  // views each
 constexpr std::size_t kSurest = 16;      // matches each that are believed
 constexpr double kFewestEvidence = 1.5;  // of a match that says anything
-constexpr double kContradiction = 0.5;   // evidence that the winner's alignment must lack
-constexpr double kTolerated = 0.05;      // share of contradicted matches: pairs err too
+constexpr double kContradiction = 0.15;  // evidence that the winner's alignment must lack: twice its noise
+constexpr double kTolerated = 0.03;      // share of contradicted matches: pairs err too
 constexpr double kWidths[] = {0.15, 0.15, 0.12, 0.12, 0.09, 0.09};  // of the sweeps that relax an assembly
 constexpr std::size_t kRelaxedLocalisations = 200;                  // of a view
 

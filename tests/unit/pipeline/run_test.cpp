@@ -134,8 +134,9 @@ TEST_F(Run, ResolutionOfHalvesIsRecordedAndPartOfTheComputation) {
 TEST_F(Run, NamesTheWeightsThatTookPartAndNoOthers) {
   ASSERT_EQ(fault({}), 0);
   EXPECT_THAT(content(out("summary.json")), ::testing::Not(HasSubstr("weights_sha256")));
-  const Engine with_weights = [](const Views& views, const RegistrationOptions& options, Progress& progress) {
-    Registration r = stay(views, options, progress);
+  const Engine with_weights = [](const Views& views, const RegistrationOptions& options, Progress& progress,
+                                 Checkpoint& checkpoint) {
+    Registration r = stay(views, options, progress, checkpoint);
     r.weights_sha256 = std::string(64, 'a');
     return r;
   };
