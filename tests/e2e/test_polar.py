@@ -180,11 +180,11 @@ class FullDisk(PolarCase):
 
     def test_run_leaves_the_earlier_result_whole(self):
         self.simulate(SMALL)
-        config = self.run_config()
+        config = self.run_config(more="registration: {starts: [imaged]}")  # small checkpoints
         self.ok("run", config)
         results = self.folder / "results"
         before = (results / "results.h5").read_bytes()
-        self.fails(4, "results.h5", "run", config, "--overwrite", **self.limited(40000))
+        self.fails(4, "results.h5", "run", config, "--overwrite", **self.limited(60000))
         self.assertEqual((results / "results.h5").read_bytes(), before)
         self.assertFalse((results / "summary.json").exists())  # so the directory does not count as complete
         self.assertEqual([path.name for path in results.iterdir() if path.name.endswith(".tmp")], [])
