@@ -109,8 +109,9 @@ class Algorithm1 {
 
 LatentRegistration register_latent(const Views& views, const Autoencoder& model, const LatentOptions& options,
                                    Progress& progress) {
-  // AdamW is the paper's descent of z, so its template is always decoded.
-  if (options.template_kind == "fused" && options.optimizer != "adamw")
+  // AdamW is the paper's descent of z, so its template is always decoded. Among outliers too: the decoder
+  // forgets a view's strands, a fused template begins with them (measured, docs/benchmarks.md).
+  if (options.template_kind == "fused" && options.optimizer != "adamw" && options.outlier_fraction == 0)
     return grow(views, model, options, progress);
   return Algorithm1(views, model, options, progress).run();
 }

@@ -14,7 +14,7 @@ struct LatentOptions {
   std::string optimizer = "levenberg_marquardt";  // levenberg_marquardt | adamw (the paper's)
 
   /// fused: the localisations of registered views are the template; decoded: D(z), the paper's, and what
-  /// adamw always takes.
+  /// is always taken with adamw or where outliers are expected.
   std::string template_kind = "fused";
   /// nu_i: per_localisation (a draw from each localisation's own covariance) | common (from the view's mean
   /// covariance, the paper's) | none.
