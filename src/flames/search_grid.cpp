@@ -14,6 +14,11 @@ constexpr int kPlanarNeighbours = 12;
 constexpr int kWorthCaching = 4000;  // rotations; smaller graphs are built in no time
 }  // namespace
 
+Eigen::Matrix3f grid_turn(bool planar, KeyedRandom random) {
+  return planar ? Eigen::Matrix3f(Eigen::Matrix3f::Identity())
+                : Eigen::Matrix3f(random.rotation().cast<float>());
+}
+
 SearchGrid search_grid(int rotations, bool planar) {
   const std::vector<Eigen::Quaternionf> q = planar ? planar_rotations(rotations) : super_fibonacci(rotations);
   const int k = planar

@@ -7,6 +7,7 @@
 #include "mixture_kernel_choice.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
+#include "polar/core/spiral.hpp"
 
 namespace polar {
 
@@ -104,11 +105,8 @@ int directions_for(const SigmaClasses& classes, bool planar) {
 
 DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions,
                                    bool planar, const BackgroundFactor& background_factor) {
-  for (int i = 0; i < directions; ++i) {  // spiral on the upper hemisphere: e and -e blur alike
-    const float z = 1 - (static_cast<float>(i) + 0.5f) / static_cast<float>(directions);
-    const float r = std::sqrt(1 - z * z), phi = kGoldenAngleF * static_cast<float>(i);
-    direction_.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
-  }
+  for (int i = 0; i < directions; ++i)  // e and -e blur alike
+    direction_.push_back(spiral_direction<float>(i, directions, Spiral::hemisphere));
   float sharpest = INFINITY;
   for (const AxialSigma& s : classes.sigma)
     sharpest = std::min({sharpest, s.lateral, planar ? s.lateral : s.axial});

@@ -1,9 +1,8 @@
 #include "polar/fusion/seen_region.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "polar/core/constants.hpp"
+#include "polar/core/spiral.hpp"
 
 namespace polar {
 
@@ -12,14 +11,10 @@ constexpr int kDirections = 96;
 constexpr double kCounted = 0.985;  // share of the points along a direction
 constexpr float kMargin = 0.01f;    // of the extent along the direction: the noise of an edge
 
-// A spiral over the whole sphere.
 std::vector<Eigen::Vector3f> spread_directions() {
   std::vector<Eigen::Vector3f> out;
-  for (int i = 0; i < kDirections; ++i) {
-    const float z = 1 - 2 * (static_cast<float>(i) + 0.5f) / static_cast<float>(kDirections);
-    const float r = std::sqrt(1 - z * z), phi = kGoldenAngleF * static_cast<float>(i);
-    out.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
-  }
+  for (int i = 0; i < kDirections; ++i)
+    out.push_back(spiral_direction<float>(i, kDirections, Spiral::sphere));
   return out;
 }
 

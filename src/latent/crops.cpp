@@ -4,17 +4,16 @@
 
 #include "mask.hpp"
 #include "polar/core/constants.hpp"
+#include "polar/core/spiral.hpp"
 
 namespace polar {
 
 namespace {
 
-// Fibonacci's lattice: evenly spread, the same every time.
 Eigen::Vector3f direction(int k, int of, bool planar) {
-  const double golden = kPi * (3 - std::sqrt(5.0));
-  const double height = planar ? 0 : 1 - (2 * k + 1.0) / of, angle = planar ? 2 * kPi * k / of : golden * k;
-  const double radius = std::sqrt(1 - height * height);
-  return Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), height).cast<float>();
+  if (!planar) return spiral_direction<double>(k, of, Spiral::sphere).cast<float>();
+  const double angle = 2 * kPi * k / of;
+  return Eigen::Vector3d(std::cos(angle), std::sin(angle), 0).cast<float>();
 }
 
 }  // namespace

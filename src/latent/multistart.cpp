@@ -30,9 +30,8 @@ Multistart::Multistart(const Autoencoder& model, const LatentOptions& options, b
 
 std::vector<std::vector<Minimum>> Multistart::minima(const LatentViews& views, const Eigen::Matrix3Xf& points,
                                                      const PosedViews& state, int round, int most) const {
-  KeyedRandom random(options_.seed, static_cast<std::uint64_t>(round), kTurnStage);
-  const Eigen::Matrix3f turn = planar_ ? Eigen::Matrix3f(Eigen::Matrix3f::Identity())
-                                       : Eigen::Matrix3f(random.rotation().cast<float>());
+  const Eigen::Matrix3f turn =
+      grid_turn(planar_, KeyedRandom(options_.seed, static_cast<std::uint64_t>(round), kTurnStage));
   return flames(model_, views, noise_classes(views, options_), grid_, turn, points, state.view_from_template,
                 most);
 }

@@ -58,14 +58,8 @@ void draw_poses(const StartContext& context, const NoiseModel& noise, const Sear
 }  // namespace
 
 StartContext start_context(const Problem& problem) {
-  StartContext context{problem, problem.all, first_of(problem.fitted, kMostLocalisations),
-                       first_of(problem.held_out, kMostHeldOut)};
-  if (context.which.size() > kMostViews) {  // evenly through the set: neighbours may share a field of view
-    std::vector<int> few(kMostViews);
-    for (std::size_t k = 0; k < kMostViews; ++k) few[k] = static_cast<int>(k * problem.size() / kMostViews);
-    context.which = few;
-  }
-  return context;
+  return {problem, some_views(problem, kMostViews), first_of(problem.fitted, kMostLocalisations),
+          first_of(problem.held_out, kMostHeldOut)};
 }
 
 Hypothesis with_template(const StartContext& context, int centres, Hypothesis h) {

@@ -25,13 +25,6 @@ constexpr double kTolerated = 0.03;      // share of contradicted matches: pairs
 constexpr double kWidths[] = {0.15, 0.15, 0.12, 0.12, 0.09, 0.09};  // of the sweeps that relax an assembly
 constexpr std::size_t kRelaxedLocalisations = 200;                  // of a view
 
-std::vector<int> some_of(const std::vector<int>& all) {
-  if (all.size() <= kMostViews) return all;
-  std::vector<int> few;  // evenly through the set: neighbours may share a field of view
-  for (std::size_t k = 0; k < kMostViews; ++k) few.push_back(all[k * all.size() / kMostViews]);
-  return few;
-}
-
 std::size_t median_size(const Subsets& subsets, const std::vector<int>& which) {
   std::vector<std::size_t> size;
   for (const int i : which) size.push_back(subsets[static_cast<std::size_t>(i)].size());
@@ -41,8 +34,7 @@ std::size_t median_size(const Subsets& subsets, const std::vector<int>& which) {
 }
 
 Eigen::Matrix3f turn_of(const Problem& problem, std::size_t view) {
-  if (problem.planar()) return Eigen::Matrix3f::Identity();
-  return KeyedRandom(problem.seed, view, kPairTurnStage).rotation().cast<float>();
+  return grid_turn(problem.planar(), KeyedRandom(problem.seed, view, kPairTurnStage));
 }
 
 }  // namespace
@@ -67,7 +59,7 @@ std::vector<Pose> spanning_poses(std::size_t views, std::vector<Joint> joints) {
 
 Assembly::Assembly(const Problem& problem)
     : problem_(problem),
-      which_(some_of(problem.all)),
+      which_(some_views(problem, kMostViews)),
       pairs_(problem.views, problem.axes, problem.fitted, which_) {}
 
 bool Assembly::contradicts(const std::vector<Pose>& template_from_view) const {

@@ -15,16 +15,13 @@ Jury jury(const Problem& problem) {
   const auto per_view = static_cast<double>(std::min<std::size_t>(
       kMostOfAView,
       static_cast<std::size_t>(problem.localisations) / std::max<std::size_t>(1, problem.size())));
-  const std::size_t n = std::min(
-      problem.size(), static_cast<std::size_t>(kDecisionLocalisations / std::max(1.0, per_view)) + 1);
   Jury jury;
+  jury.which =
+      some_views(problem, static_cast<std::size_t>(kDecisionLocalisations / std::max(1.0, per_view)) + 1);
   jury.fitted = first_of(problem.fitted, kMostOfAView);
   jury.held_out.resize(problem.size());
-  for (std::size_t k = 0; k < n; ++k) {  // evenly through the set: neighbours may share a field of view
-    const std::size_t i = k * problem.size() / n;
-    jury.which.push_back(static_cast<int>(i));
-    jury.held_out[i] = problem.held_out[i];
-  }
+  for (const int i : jury.which)
+    jury.held_out[static_cast<std::size_t>(i)] = problem.held_out[static_cast<std::size_t>(i)];
   return jury;
 }
 

@@ -51,6 +51,13 @@ Problems make_problems(const Views& views, std::uint64_t seed) {
   return {std::move(thinned), std::move(plain)};
 }
 
+std::vector<int> some_views(const Problem& problem, std::size_t most) {
+  const std::size_t n = std::min(problem.size(), most);
+  std::vector<int> few(n);
+  for (std::size_t k = 0; k < n; ++k) few[k] = static_cast<int>(k * problem.size() / n);
+  return few;
+}
+
 Subsets first_of(const Subsets& subsets, std::size_t most) {
   Subsets few = subsets;
   for (auto& s : few)

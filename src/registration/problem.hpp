@@ -35,6 +35,9 @@ struct Problems {
 /// Localisations that are held out are the same, and even, in both.
 Problems make_problems(const Views& views, std::uint64_t seed);
 
+/// At most `most` views, evenly through the set: neighbours may share a field of view.
+std::vector<int> some_views(const Problem& problem, std::size_t most);
+
 /// The first `most` of every list.
 Subsets first_of(const Subsets& subsets, std::size_t most);
 

@@ -175,9 +175,12 @@ std::vector<std::string> violations(const RegistrationOptions& options) {
   return faults;
 }
 
+bool wants(const RegistrationOptions& options, const std::string& start) {
+  return std::find(options.starts.begin(), options.starts.end(), start) != options.starts.end();
+}
+
 bool needs_weights(const RegistrationOptions& options) {
-  return options.method == "latent" ||
-         std::find(options.starts.begin(), options.starts.end(), "polar") != options.starts.end();
+  return options.method == "latent" || wants(options, "polar");
 }
 
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {

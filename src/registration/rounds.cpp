@@ -66,9 +66,8 @@ void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptio
     search.grid.step = static_cast<float>(options.parts_spacing / 2);
     search.coarse_localisations = options.parts_coarse;
   }
-  KeyedRandom turns(problem.seed, static_cast<std::uint64_t>(state.rounds), kTurnStage);
-  const Eigen::Matrix3f turn = problem.planar() ? Eigen::Matrix3f(Eigen::Matrix3f::Identity())
-                                                : Eigen::Matrix3f(turns.rotation().cast<float>());
+  const Eigen::Matrix3f turn = grid_turn(
+      problem.planar(), KeyedRandom(problem.seed, static_cast<std::uint64_t>(state.rounds), kTurnStage));
   const SearchAgainReport report =
       search_again(problem.views, problem.axes, subset, state.mixture, noise, grid, turn, search, state.pose);
   state.margin = report.margin;

@@ -32,10 +32,6 @@ int random_starts(const StartContext& context, const AnnealingOptions& options) 
   return std::clamp(static_cast<int>(kLookUpBudget / std::max(1.0, look_ups)), kFewestRandom, kMostRandom);
 }
 
-bool wants(const RegistrationOptions& options, const char* start) {
-  return std::find(options.starts.begin(), options.starts.end(), start) != options.starts.end();
-}
-
 std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartContext& plain,
                                    const RegistrationOptions& wishes, Progress& progress,
                                    Checkpoint& checkpoint) {
@@ -80,15 +76,14 @@ double score_of_parts(const Problem& problem, const RoundState& state) {
 }
 
 // Pairs of views have the last word: where they contradict the winner, or there is none, what they say is
-// registered too. Both are then judged as parts.
-// False: cancelled.
+// registered too. Both are then judged as parts. False: cancelled.
 bool challenge(const Problems& problems, const SearchGrid& grid, const RoundOptions& rounds,
                Progress& progress, Checkpoint& checkpoint, StartsOutcome& out) {
   const Problem& problem = problems.thinned;
-  const Assembly assembly(problem);
-  if (out.finished && !assembly.contradicts(out.winner.pose)) return true;
   RoundState state;
   if (!restore(checkpoint, "pairs", state)) {
+    const Assembly assembly(problem);
+    if (out.finished && !assembly.contradicts(out.winner.pose)) return true;
     state = assembly.assembled(rounds, progress);
     if (progress.cancelled()) return false;
     keep(checkpoint, "pairs", state);

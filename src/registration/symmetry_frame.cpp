@@ -7,6 +7,7 @@
 #include "polar/core/nelder_mead.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/so3.hpp"
+#include "polar/core/spiral.hpp"
 #include "polar/core/symmetry_group.hpp"
 
 namespace polar {
@@ -14,8 +15,7 @@ namespace polar {
 namespace {
 
 constexpr std::size_t kDirections = 4000;  // of axes, 2.3 degrees apart; a search's width is 3.4 at the rim
-constexpr double kGoldenAngle = 2.399963229728653;
-constexpr double kAxesApart = 0.35;  // rad, of axes that are tried for one group
+constexpr double kAxesApart = 0.35;        // rad, of axes that are tried for one group
 constexpr std::size_t kAxesTried = 3;
 constexpr double kSweepStep = 1.5 * kRadiansPerDegree;  // of the turn about a main axis
 constexpr std::size_t kMostTurns = 16;                  // of a group that a frame is refined by
@@ -37,10 +37,8 @@ MainAxis main_axis(const std::string& group) {
   return {Axis::UnitZ(), std::stoi(group.substr(1))};
 }
 
-Axis direction(std::size_t i) {  // spiral on the upper hemisphere: an axis has no sign
-  const double z = 1 - (static_cast<double>(i) + 0.5) / static_cast<double>(kDirections);
-  const double r = std::sqrt(1 - z * z), phi = kGoldenAngle * static_cast<double>(i);
-  return {r * std::cos(phi), r * std::sin(phi), z};
+Axis direction(std::size_t i) {
+  return spiral_direction<double>(static_cast<int>(i), static_cast<int>(kDirections), Spiral::hemisphere);
 }
 
 // The best axes of this order, best first, well apart.

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "polar/core/rng.hpp"
 #include "polar/flames/neighbour_graph.hpp"
 
 namespace polar {
@@ -15,6 +16,9 @@ struct SearchGrid {
   std::vector<Eigen::Matrix3f> rotation;
   NeighbourGraph graph;
 };
+
+/// By which a search turns its grid, so that no two look at the same rotations; none for planar data.
+Eigen::Matrix3f grid_turn(bool planar, KeyedRandom random);
 
 /// Grid of about `rotations` rotations with the neighbourhood that reaches as far as 256 of 50,000 do;
 /// planar: rotations about z. Large graphs are kept in the cache directory.

@@ -28,6 +28,9 @@ struct RegistrationOptions {
 /// One sentence per fault, empty when the options can be used.
 std::vector<std::string> violations(const RegistrationOptions& options);
 
+/// Whether `start` is among those that compete.
+bool wants(const RegistrationOptions& options, const std::string& start);
+
 /// Whether the autoencoder takes part: as the method or as one of the starts.
 bool needs_weights(const RegistrationOptions& options);
 
