@@ -14,7 +14,7 @@ namespace polar {
 namespace {
 constexpr std::uint32_t kTurnStage = 31;
 constexpr double kLocalisationsPerCentre = 25;
-constexpr int kFewestCentres = 96, kMostCentres = 512;
+constexpr int kFewestCentres = 320, kMostCentres = 512;
 constexpr std::size_t kSweepLocalisations = 300;  // of a view while the template is still moving
 constexpr int kGivenSweeps = 8;
 constexpr const char* kUnderWay = "rounds";

@@ -14,7 +14,8 @@ namespace {
 constexpr int kFewestRandom = 3, kMostRandom = 12;
 constexpr double kLookUpBudget =
     3.0e9;  // over all random starts: seconds on two cores, whatever the size of the set
-constexpr int kFirstCentres = 160;
+constexpr int kLongStarts = 6, kMostSweeps = 60;
+constexpr int kFirstCentres = 320;
 constexpr int kMostFinalists = 5;
 constexpr double kFinalistLocalisations =
     60000;  // views x localisations that the finalists may cost together
@@ -26,7 +27,17 @@ double localisations(const StartContext& context) {
   return total;
 }
 
-// Random starts are many where they are cheap, which is where localisations are few and a start often fails.
+// What the budget buys: where localisations are few a start is cheap and often fails, so starts are long
+// there and many.
+AnnealingOptions annealing(const StartContext& context) {
+  AnnealingOptions options;
+  const double look_ups_of_a_sweep = localisations(context) * options.rotations * 7.0;
+  options.sweeps =
+      std::clamp(static_cast<int>(kLookUpBudget / kLongStarts / std::max(1.0, look_ups_of_a_sweep)),
+                 options.sweeps, kMostSweeps);
+  return options;
+}
+
 int random_starts(const StartContext& context, const AnnealingOptions& options) {
   const double look_ups = localisations(context) * options.rotations * 7.0 * options.sweeps;
   return std::clamp(static_cast<int>(kLookUpBudget / std::max(1.0, look_ups)), kFewestRandom, kMostRandom);
@@ -35,7 +46,7 @@ int random_starts(const StartContext& context, const AnnealingOptions& options) 
 std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartContext& plain,
                                    const RegistrationOptions& wishes, Progress& progress,
                                    Checkpoint& checkpoint) {
-  const AnnealingOptions options;
+  const AnnealingOptions options = annealing(plain);
   const int random = wants(wishes, "random") ? random_starts(plain, options) : 0;
   const bool polar = wants(wishes, "polar");
   const int total = random + (polar ? 1 : 0) + (wants(wishes, "imaged") ? 1 : 0);
