@@ -40,9 +40,9 @@ double spacing(const Eigen::Matrix3Xf& points) {
 
 }  // namespace
 
-Registration latent_method(const Problem& problem, const RegistrationOptions& options, Progress& progress) {
-  const std::unique_ptr<Autoencoder> model = autoencoder(options);
-  const LatentRegistration latent = register_latent(problem.views, *model, latent_options(options), progress);
+Registration latent_method(const Problem& problem, const Autoencoder& model,
+                           const RegistrationOptions& options, Progress& progress) {
+  const LatentRegistration latent = register_latent(problem.views, model, latent_options(options), progress);
   Registration out;
   out.view.resize(problem.size());
   out.rounds = latent.loops;

@@ -11,7 +11,7 @@ namespace polar {
 namespace {
 
 // A start is judged and refined by the likelihood, so it only has to find the basins.
-constexpr int kLocalisations = 256, kRotations = 1152, kBasins = 4, kLoops = 2;
+constexpr int kLocalisations = 256, kRotations = 1152, kBasins = 4, kLoopsAlone = 2;
 
 Views chosen(const StartContext& context) {
   Views few;
@@ -23,12 +23,10 @@ Views chosen(const StartContext& context) {
 
 }  // namespace
 
-std::unique_ptr<Autoencoder> autoencoder(const RegistrationOptions& options) {
-  return make_pointnet(read_weights(weights_path(options.weights)).weights);
-}
-
-std::string weights_sha256(const RegistrationOptions& options) {
-  return needs_weights(options) ? read_weights(weights_path(options.weights)).sha256 : "";
+LatentModel latent_model(const RegistrationOptions& options) {
+  if (!needs_weights(options)) return {};
+  WeightsFile file = read_weights(weights_path(options.weights));
+  return {make_pointnet(std::move(file.weights)), std::move(file.sha256)};
 }
 
 LatentOptions latent_options(const RegistrationOptions& options) {
@@ -44,7 +42,7 @@ Hypothesis polar_start(const StartContext& context, const Autoencoder& model,
   LatentOptions few = latent_options(options);
   few.localisations = std::min(few.localisations, kLocalisations);
   few.basins = std::min(few.basins, kBasins);
-  few.most_loops = std::min(few.most_loops, kLoops);
+  few.most_loops = std::min(few.most_loops, options.starts.size() > 1 ? 1 : kLoopsAlone);
   if (few.rotations == 0 && few.search == "fast" && !context.problem.planar()) few.rotations = kRotations;
   Progress silent;
   const LatentRegistration latent = register_latent(chosen(context), model, few, silent);

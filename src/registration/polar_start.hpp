@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "ab_initio.hpp"
 #include "polar/core/progress.hpp"
@@ -11,16 +12,20 @@
 
 namespace polar {
 
-/// The autoencoder that `options` name. Throws smlm::Error where its file is missing or damaged.
-std::unique_ptr<Autoencoder> autoencoder(const RegistrationOptions& options);
+/// The autoencoder that takes part and the hash that names its weights; both empty where none does.
+struct LatentModel {
+  std::unique_ptr<Autoencoder> autoencoder;
+  std::string weights_sha256;
+};
 
-/// The hash that names those weights, empty where no autoencoder takes part.
-std::string weights_sha256(const RegistrationOptions& options);
+/// Throws smlm::Error where the file that `options` need is missing or damaged.
+LatentModel latent_model(const RegistrationOptions& options);
 
 /// The latent options with the seed, search and optimizer of the registration.
 LatentOptions latent_options(const RegistrationOptions& options);
 
-/// A short latent registration of the views under competition: a constant number of encodings at most.
+/// A short latent registration of the views under competition: a constant number of encodings at most, half
+/// as many where other starts compete.
 Hypothesis polar_start(const StartContext& context, const Autoencoder& model,
                        const RegistrationOptions& options, int centres, int number);
 

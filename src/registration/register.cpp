@@ -191,24 +191,27 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress,
                             Checkpoint& checkpoint) {
   check_planar(views, options);
+  LatentModel model = latent_model(options);
   if (options.method == "latent") {
     Stopwatch watch;
-    Registration out = latent_method(make_problems(views, options.seed).plain, options, progress);
-    out.weights_sha256 = weights_sha256(options);
+    Registration out =
+        latent_method(make_problems(views, options.seed).plain, *model.autoencoder, options, progress);
+    out.weights_sha256 = std::move(model.weights_sha256);
     out.timings.push_back({"latent", watch.lap()});
     return out;
   }
   Run run(views, options, progress, checkpoint);
   StartsOutcome starts;
   if (!restore(checkpoint, "winner", starts)) {
-    starts = compete(run.problems, options, run.grid, run.rounds, progress, checkpoint);
+    starts =
+        compete(run.problems, model.autoencoder.get(), options, run.grid, run.rounds, progress, checkpoint);
     run.timed("starts");
     if (!starts.finished) return cancelled(run);
     checkpoint.drop("start "), checkpoint.drop("finalist ");
     keep(checkpoint, "winner", starts);
   }
   run.out.starts = starts.report;
-  run.out.weights_sha256 = weights_sha256(options);
+  run.out.weights_sha256 = std::move(model.weights_sha256);
   return from_state(run, options, std::move(starts.winner));
 }
 

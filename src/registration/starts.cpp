@@ -44,8 +44,8 @@ int random_starts(const StartContext& context, const AnnealingOptions& options) 
 }
 
 std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartContext& plain,
-                                   const RegistrationOptions& wishes, Progress& progress,
-                                   Checkpoint& checkpoint) {
+                                   const Autoencoder* model, const RegistrationOptions& wishes,
+                                   Progress& progress, Checkpoint& checkpoint) {
   const AnnealingOptions options = annealing(plain);
   const int random = wants(wishes, "random") ? random_starts(plain, options) : 0;
   const bool polar = wants(wishes, "polar");
@@ -64,9 +64,8 @@ std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartConte
       hypotheses.push_back(random_start(context, kFirstCentres, k, crowded));
       anneal(context, options, false, hypotheses.back());
     } else {
-      hypotheses.push_back(polar && k == random
-                               ? polar_start(plain, *autoencoder(wishes), wishes, kFirstCentres, k)
-                               : imaged_start(plain, kFirstCentres, k));
+      hypotheses.push_back(polar && k == random ? polar_start(plain, *model, wishes, kFirstCentres, k)
+                                                : imaged_start(plain, kFirstCentres, k));
       AnnealingOptions gentle = options;  // the poses are meant to be near: begin narrower and colder
       gentle.first_width = 0.2;
       gentle.first_beta = 1;
@@ -124,10 +123,11 @@ RoundState state_of(const StartContext& context, const Hypothesis& h) {
 
 }  // namespace
 
-StartsOutcome compete(const Problems& problems, const RegistrationOptions& options, const SearchGrid& grid,
-                      const RoundOptions& rounds, Progress& progress, Checkpoint& checkpoint) {
+StartsOutcome compete(const Problems& problems, const Autoencoder* model, const RegistrationOptions& options,
+                      const SearchGrid& grid, const RoundOptions& rounds, Progress& progress,
+                      Checkpoint& checkpoint) {
   const StartContext thinned = start_context(problems.thinned), plain = start_context(problems.plain);
-  std::vector<Hypothesis> hypotheses = short_runs(thinned, plain, options, progress, checkpoint);
+  std::vector<Hypothesis> hypotheses = short_runs(thinned, plain, model, options, progress, checkpoint);
   if (progress.cancelled()) return {};
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });

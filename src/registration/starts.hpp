@@ -8,6 +8,7 @@
 
 #include "ab_initio.hpp"
 #include "polar/core/progress.hpp"
+#include "polar/model/autoencoder.hpp"
 #include "polar/registration/checkpoint.hpp"
 #include "polar/registration/register.hpp"
 #include "rounds.hpp"
@@ -20,7 +21,9 @@ struct StartsOutcome {
   bool finished = false;  // false: cancelled
 };
 
-StartsOutcome compete(const Problems& problems, const RegistrationOptions& options, const SearchGrid& grid,
-                      const RoundOptions& rounds, Progress& progress, Checkpoint& checkpoint);
+/// `model`: of the start `polar`, null where it is not wanted.
+StartsOutcome compete(const Problems& problems, const Autoencoder* model, const RegistrationOptions& options,
+                      const SearchGrid& grid, const RoundOptions& rounds, Progress& progress,
+                      Checkpoint& checkpoint);
 
 }  // namespace polar

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <functional>
 #include <iostream>
 #include <string>
@@ -123,21 +124,28 @@ Pose normalised(const Pose& structure_from_table_nm, const Normalisation& n, std
 struct Outcome {
   Registration registration;
   Comparison comparison;
-  double seconds = 0;
+  double seconds = 0, processor_seconds = 0;  // the latter of all threads: what other work cannot change
   std::size_t right = 0;
   double log_likelihood = 0;  // mean over views of the mean per localisation
 
+  std::string winner() const {
+    for (const StartReport& s : registration.starts)
+      if (s.won) return s.name;
+    return "-";
+  }
   bool is_right(std::size_t i) const { return comparison.particle[i].rotation_deg <= kRight_deg; }
 };
 
 /// Runs `work` on the prepared views and compares every pose it gives, accepted or not.
 Outcome measured(const Task& task, const std::function<Registration(const Views&)>& work) {
   const auto start = std::chrono::steady_clock::now();
+  const std::clock_t spent = std::clock();
   const Views views = prepare_views(task.particles);
   Results results;
   results.registration = work(views);
   Outcome out;
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  out.processor_seconds = static_cast<double>(std::clock() - spent) / CLOCKS_PER_SEC;
   results.normalisation = views.normalisation;
   std::vector<PoseRow> estimate, truth;
   for (std::size_t i = 0; i < task.truth_nm.size(); ++i) {
@@ -175,10 +183,11 @@ void hard_case(const Shape& shape, const Structure& structure, const Case& c,
         found.registration.view[i].log_likelihood < from_truth.registration.view[i].log_likelihood;
     ++(worse ? failed : ambiguous);
   }
-  std::printf("| %s | %s | %.3f | %.3f | %.2f | %zu | %zu | %.3f | %.3f | %d | %d | %.1f |\n", shape.name,
-              c.name, found.comparison.recall[0], found.comparison.recall[1],
+  std::printf("| %s | %s | %.3f | %.3f | %.2f | %zu | %zu | %.3f | %.3f | %d | %d | %s | %.1f | %.1f |\n",
+              shape.name, c.name, found.comparison.recall[0], found.comparison.recall[1],
               found.comparison.median_pair_deg, found.right, from_truth.right, found.log_likelihood,
-              from_truth.log_likelihood, failed, ambiguous, found.seconds);
+              from_truth.log_likelihood, failed, ambiguous, found.winner().c_str(), found.seconds,
+              found.processor_seconds);
   std::fflush(stdout);
 }
 
@@ -190,10 +199,10 @@ void sample_case(const std::string& path, const std::string& group, std::uint64_
     const Outcome o = measured(task, [&](const Views& v) { return register_views(v, options, silent); });
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    std::printf("| %s | %s | %llu | %.4f | %.4f | %.2f | %.1f | %.0f |\n", group.c_str(),
+    std::printf("| %s | %s | %llu | %.4f | %.4f | %.2f | %s | %.1f | %.1f | %.0f |\n", group.c_str(),
                 options.search.c_str(), static_cast<unsigned long long>(options.seed), o.comparison.recall[0],
-                o.comparison.recall[1], o.comparison.median_pair_deg, o.seconds,
-                static_cast<double>(usage.ru_maxrss) / 1024);
+                o.comparison.recall[1], o.comparison.median_pair_deg, o.winner().c_str(), o.seconds,
+                o.processor_seconds, static_cast<double>(usage.ru_maxrss) / 1024);
     std::fflush(stdout);
   }
 }
@@ -238,16 +247,18 @@ int main(int argc, char** argv) {
     const std::vector<std::string> faults = violations(options);
     if (!faults.empty()) throw smlm::Error(smlm::Fault::usage, "--search", faults.front());
     if (!sample.empty()) {
-      std::puts("| group | search | seed | recall 5 deg | recall 10 deg | median deg | s | peak MiB |");
-      std::puts("|---|---|---|---|---|---|---|---|");
+      std::puts(
+          "| group | search | seed | recall 5 deg | recall 10 deg | median deg | winner | s | processor s | "
+          "peak MiB |");
+      std::puts("|---|---|---|---|---|---|---|---|---|---|");
       for (const char* group : {"anisotropy", "cropped_noisy"})
         if (chosen(cases, group)) sample_case(sample, group, seeds, most_views, options);
     }
     if (folder.empty()) return 0;
     std::puts(
         "| shape | case | recall 5 deg | recall 10 deg | median deg | right | right from truth | log "
-        "likelihood | from truth | failed search | ambiguous | s |");
-    std::puts("|---|---|---|---|---|---|---|---|---|---|---|---|");
+        "likelihood | from truth | failed search | ambiguous | winner | s | processor s |");
+    std::puts("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for (const Case& c : kCases) {
       if (!chosen(cases, c.name)) continue;
       for (const Shape& shape : kShapes) {

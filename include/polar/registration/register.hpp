@@ -15,8 +15,7 @@ namespace polar {
 
 struct RegistrationOptions {
   std::uint64_t seed = 1;  // every random choice follows from it
-  std::vector<std::string> starts = {"random", "imaged",
-                                     "assembled"};  // hypotheses that compete; also: polar
+  std::vector<std::string> starts = {"polar", "random", "imaged", "assembled"};  // hypotheses that compete
   std::string method = "likelihood";  // likelihood | latent: the paper's registration and nothing after it
   std::string search = "fast";        // fast | exhaustive
   std::string optimizer = "levenberg_marquardt";  // of the latent registration: | adamw (the paper's)
