@@ -45,6 +45,11 @@ Symmetric3 effective_covariance(const Symmetric3& stated, const Eigen::Vector3f&
   const auto al = static_cast<float>(noise.lateral_factor), aa = static_cast<float>(noise.axial_factor);
   const auto bl = static_cast<float>(noise.lateral_extra * noise.lateral_extra + noise.width * noise.width);
   const auto ba = static_cast<float>(noise.axial_extra * noise.axial_extra + noise.width * noise.width);
+  if (al == aa && bl == ba) {  // no direction is told apart: the same numbers with fewer products
+    const float b = bl + kSmallestVariance;
+    return {al * stated[0] * al + b, al * stated[1] * al, al * stated[2] * al,
+            al * stated[3] * al + b, al * stated[4] * al, al * stated[5] * al + b};
+  }
   const Eigen::Matrix3f along = axis * axis.transpose();
   const Eigen::Matrix3f factor = al * Eigen::Matrix3f::Identity() + (aa - al) * along;
   const Eigen::Matrix3f c = factor * matrix(stated) * factor +
