@@ -174,7 +174,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
 }
 
 std::vector<float> DirectionVolumes::empty_volume(float density, const BackgroundFactor& factor) const {
-  std::vector<float> out(stride_, density);
+  std::vector<float> out(stride_ + kernel::kLanes, density);  // add_gaussian_row touches a little more
   if (!factor) return out;
   float* at = out.data();
   for (int z = 0; z < dim_[2]; ++z)

@@ -63,9 +63,14 @@ KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f
   KernelLocalisations out(n);
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t j = subset.empty() ? k : subset[k];
-    const Symmetric3 c = effective_covariance(view.covariance[j], axis, noise);
     const Eigen::Vector3f x = view.points.col(static_cast<Eigen::Index>(j));
     kernel::Localisation& l = out[k];
+    if (k > 0 && view.covariance[j] == view.covariance[subset.empty() ? k - 1 : subset[k - 1]]) {
+      l = out[k - 1];  // many tables have one uncertainty for a whole particle
+      l.x = x.x(), l.y = x.y(), l.z = noise.planar ? 0 : x.z();
+      continue;
+    }
+    const Symmetric3 c = effective_covariance(view.covariance[j], axis, noise);
     if (noise.planar) {
       const float det = c[0] * c[3] - c[1] * c[1], half = 0.5f * (c[0] + c[3]);
       const float spread = std::sqrt(std::max(0.0f, half * half - det));

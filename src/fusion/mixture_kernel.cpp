@@ -96,13 +96,10 @@ void accumulate(const Centres& c, const Localisation* l, int n, float background
 
 void add_gaussian_row(float* row, int begin, int end, float amplitude, float a, float b, float c) {
   V i = V{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15} + static_cast<float>(begin);
-  int k = begin;
-  for (; k + kLanes <= end; k += kLanes, i += static_cast<float>(kLanes))
-    store(row + k, load(row + k) + amplitude * exp_of(-0.5f * (a + i * (b + c * i))));
-  if (k < end) {
-    float rest[kLanes];
-    store(rest, amplitude * exp_of(-0.5f * (a + i * (b + c * i))));
-    for (int r = 0; k < end; ++k, ++r) row[k] += rest[r];
+  const float last = static_cast<float>(end);
+  for (int k = begin; k < end; k += kLanes, i += static_cast<float>(kLanes)) {
+    const V value = amplitude * exp_of(-0.5f * (a + i * (b + c * i)));
+    store(row + k, load(row + k) + (i < last ? value : splat(0)));
   }
 }
 

@@ -44,7 +44,8 @@ struct MixtureKernel {
   // inlier[j] receives total / (total + background), scratch holds 16 x blocks floats.
   void (*accumulate)(const Centres&, const Localisation*, int n, float background, float* sums, float* inlier,
                      float* density, float* scratch);
-  // row[i] += amplitude * exp(-(a + b i + c i^2) / 2) for i in [begin, end).
+  // row[i] += amplitude * exp(-(a + b i + c i^2) / 2) for i in [begin, end); the 15 numbers beyond are
+  // rewritten as they are.
   void (*add_gaussian_row)(float* row, int begin, int end, float amplitude, float a, float b, float c);
   // out[i] = round(scale * (ln(in[i]) - zero)) clipped to int16.
   void (*quantise_log)(const float* in, int n, float zero, float scale, short* out);
