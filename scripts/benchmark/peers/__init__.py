@@ -24,6 +24,10 @@ NOT_INSTALLED = 77  # exit code of a module whose program is missing
 NICENESS = 10       # they take long
 
 
+class Missing(Exception):
+    """A program is not installed."""
+
+
 def measure(study, point, settings, program, folder: Path, a, kept):
     """One row a program. `kept` holds the row of each in a folder of its own, so that a study cut short goes on; rows of
     other programs are kept by the table that they read, whichever version of this program wrote it."""
@@ -38,8 +42,11 @@ def measure(study, point, settings, program, folder: Path, a, kept):
     for name, (module, options, limit_cpu_s) in PEERS.items():
         result = folder.parent / f"views_{table}" / f"{module}_{options[1]}"
         work = lambda: peer(program, a.peers_python, module, options, limit_cpu_s, data, result / "poses.csv")  # noqa: E731
-        key = f"{options} {limit_cpu_s}"
-        rows.append({"method": name, **(kept(result, key, work) if a.peers_python else {"skipped": "no --peers-python"})})
+        try:
+            row = kept(result, f"{options} {limit_cpu_s}", work) if a.peers_python else {"skipped": "no --peers-python"}
+        except Missing as missing:  # not kept: it may be installed by the next call
+            row = {"skipped": str(missing)}
+        rows.append({"method": name, **row})
     return rows
 
 
@@ -57,7 +64,7 @@ def peer(program, python, module, options, limit_cpu_s, data, poses):
     script = Path(__file__).with_name(f"{module}.py")
     done = process([python, script, data / "localisations.csv", poses, *options], limit_cpu_s, NICENESS)
     if done.code == NOT_INSTALLED:
-        return {"skipped": done.err.splitlines()[-1]}
+        raise Missing(done.err.splitlines()[-1])
     note = (done.out.strip().splitlines() or [""])[-1]
     if done.cut_off:
         note = f"cut off after {limit_cpu_s} CPU s: {note or 'nothing done'}"
