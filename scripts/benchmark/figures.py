@@ -4,6 +4,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from matplotlib.ticker import NullLocator  # noqa: E402
 
 from .runner import grouped, mean  # noqa: E402
 
@@ -17,7 +18,35 @@ def lines_of(record, key):
     return out
 
 
+def plain_numbers(axis, ticks):
+    """Ticks of a logarithmic axis as they are said: 1, 2, 5, 10."""
+    low, high = axis.get_view_interval()
+    axis.set_ticks([t for t in ticks if low <= t <= high])
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_locator(NullLocator())
+
+
+def decades(low, high):
+    return [digit * 10.0 ** power for power in range(low, high) for digit in (1, 2, 5)]
+
+
+def bars(axes, record):
+    """A bar a series beside each other, where the labels are words and no line leads from one to the next."""
+    lines = lines_of(record, "recall_10")
+    labels = list(dict.fromkeys(label for x, _ in lines.values() for label in x))
+    width = 0.8 / len(lines)
+    for k, (series, (x, y)) in enumerate(lines.items()):
+        at = [labels.index(label) + (k - (len(lines) - 1) / 2) * width for label in x]
+        drawn = axes.bar(at, y, width, label=series)
+        axes.bar_label(drawn, fmt="%.2f", fontsize=7)
+    axes.set_xticks(range(len(labels)), labels)
+    axes.set(ylabel="registration recall (10°)", ylim=(0, 1.08))
+    axes.legend()
+
+
 def sweep(axes, study, record):
+    if any(isinstance(p["label"], str) for p in record["points"]):
+        return bars(axes, record)
     for series, (x, y) in lines_of(record, "recall_10").items():
         axes.plot(x, y, "o-", label=f"{series} 10°".strip())
     if len(lines_of(record, "recall_10")) == 1:
@@ -31,7 +60,9 @@ def cdf(axes, study, record):
     degrees = np.arange(1, 181)
     for (series, label), rows in grouped(record["points"]):
         axes.plot(degrees, np.mean([r["cdf"] for r in rows], axis=0), label=f"{series} {label}".strip())
-    axes.set(xscale="log", xlabel="relative rotation error (deg)", ylabel="share of pairs", ylim=(-0.02, 1.04))
+    axes.set(xscale="log", xlim=(1, 180), xlabel="relative rotation error (deg)", ylabel="share of pairs",
+             ylim=(-0.02, 1.04))
+    plain_numbers(axes.xaxis, [*decades(0, 3), 180])
     axes.legend()
 
 
@@ -41,6 +72,8 @@ def seconds(axes, study, record):
     for _, (x, y) in lines_of(record, "cpu_s").items():
         axes.loglog(x, y, "s--", label="processor")
     axes.set(xlabel=study.axis, ylabel="seconds")
+    plain_numbers(axes.xaxis, sorted({p["label"] for p in record["points"]}))
+    plain_numbers(axes.yaxis, decades(-1, 5))
     axes.legend()
 
 

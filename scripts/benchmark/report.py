@@ -54,11 +54,12 @@ def peers_table(study, record):
     for g in record["points"]:
         where = [place(g["series"], g["label"]), g["object"], g["method"]]
         if g.get("skipped"):
-            rows.append([*where, "-", "-", "-", "-", g["skipped"]])
+            rows.append([*where, *6 * "-", g["skipped"]])
         else:
             rows.append([*where, f"{g['recall_5']:.3f}", f"{g['recall_10']:.3f}", f"{g['median_deg']:.2f}",
-                         f"{g['wall_s']:.1f}", g.get("note", "")])
-    return table([study.axis, "object", "method", "recall 5 deg", "recall 10 deg", "median deg", "s", "note"], rows)
+                         f"{g['wall_s']:.1f}", f"{g['cpu_s']:.1f}", peak([g]), g.get("note", "")])
+    return table([study.axis, "object", "method", "recall 5 deg", "recall 10 deg", "median deg", "s", "CPU s", "peak MiB",
+                  "note"], rows)
 
 
 def period(half_maps):

@@ -18,10 +18,6 @@ def machine():
     return f"{model}, {cores} cores"
 
 
-def load_average():
-    return float(open("/proc/loadavg").read().split()[0])
-
-
 def simulate_settings(study, point, chosen, level, a):
     settings = {**study.simulate, "simulation.particles": study.views[level], "simulation.cramer_rao": False}
     if chosen:
@@ -34,12 +30,11 @@ def simulate_settings(study, point, chosen, level, a):
 def measure(study, point, settings, program, folder):
     data, result = folder / "data", folder / "result"
     program.simulate(settings, data)
-    load = load_average()
     try:
         summary, cost = program.run(data, {**study.run, **point.run}, result)
     except NothingRegistered as nothing:
         summary, cost = {"accepted": 0, "particles": settings["simulation.particles"]}, nothing.cost
-    out = {"wall_s": cost.wall_s, "cpu_s": cost.cpu_s, "peak_mib": cost.peak_mib, "load": load,
+    out = {"wall_s": cost.wall_s, "cpu_s": cost.cpu_s, "peak_mib": cost.peak_mib, "load": cost.load,
            "accepted": summary["accepted"], "particles": summary["particles"],
            "resolution": summary.get("resolution")}
     if summary["accepted"] < 2:
@@ -87,7 +82,7 @@ def run(study, level, program, a):
                 key = json.dumps([record["version"], settings, {**study.run, **point.run}], sort_keys=True)
                 folder = a.work / study.name / hashlib.sha256(key.encode()).hexdigest()[:16]
                 if study.kind == "peers":
-                    rows = kept(folder, key, lambda: peers.measure(study, point, settings, program, folder, a))
+                    rows = peers.measure(study, point, settings, program, folder, a, kept)
                 else:
                     rows = [kept(folder, key, lambda: measure(study, point, settings, program, folder))]
                 for row in rows:

@@ -174,7 +174,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
 }
 
 std::vector<float> DirectionVolumes::empty_volume(float density, const BackgroundFactor& factor) const {
-  std::vector<float> out(stride_, density);
+  std::vector<float> out(stride_ + kernel::kLanes, density);  // add_gaussian_row touches a little more
   if (!factor) return out;
   float* at = out.data();
   for (int z = 0; z < dim_[2]; ++z)
@@ -201,35 +201,38 @@ int DirectionVolumes::direction_of(const SearchView& view, const Eigen::Matrix3f
   return best;
 }
 
-float DirectionVolumes::score(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
-                              const Eigen::Vector3f& translation) const {
-  constexpr int kBatch = 256;
-  const auto voxel_index = mixture_kernel().voxel_index;
+void DirectionVolumes::scores(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
+                              const std::vector<Eigen::Vector3f>& translation, float* score) const {
+  constexpr std::size_t kBatch = kernel::kMostPoints, kShifts = 64;  // localisations and shifts at a time
+  const kernel::MixtureKernel& kernel = mixture_kernel();
   const float inverse = 1 / voxel_;
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r = rotation * inverse;
-  const Eigen::Vector3f t = (translation - origin_) * inverse;
-  int index[kBatch];
-  std::int64_t total = 0;
-  for (const SearchView::Part& part : view.part) {
-    const std::int16_t* value = volume(part.sigma_class, direction);
-    for (int begin = 0; begin < part.count; begin += kBatch) {
-      const int n = std::min(kBatch, part.count - begin);
-      const auto at = static_cast<std::size_t>(begin);
-      voxel_index(part.x.data() + at, part.y.data() + at, part.z.data() + at, n, r.data(), t.data(), dim_,
-                  index);
-      std::int32_t sum0 = 0, sum1 = 0, sum2 = 0, sum3 = 0;
-      int j = 0;
-      for (; j + 4 <= n; j += 4) {
-        sum0 += value[index[j]];
-        sum1 += value[index[j + 1]];
-        sum2 += value[index[j + 2]];
-        sum3 += value[index[j + 3]];
+  float u[kBatch], v[kBatch], w[kBatch];
+  Eigen::Vector3f offset[kShifts];
+  for (std::size_t first = 0; first < translation.size(); first += kShifts) {
+    const std::size_t shifts = std::min(kShifts, translation.size() - first);
+    for (std::size_t s = 0; s < shifts; ++s) offset[s] = (translation[first + s] - origin_) * inverse;
+    long long total[kShifts] = {};
+    for (const SearchView::Part& part : view.part) {
+      const auto count = static_cast<std::size_t>(part.count);
+      for (std::size_t at = 0; at < count; at += kBatch) {
+        const int n = static_cast<int>(std::min(kBatch, count - at));
+        kernel.rotate(part.x.data() + at, part.y.data() + at, part.z.data() + at, n, r.data(), u, v, w);
+        kernel.nearest_sums(u, v, w, n, offset[0].data(), static_cast<int>(shifts), dim_,
+                            volume(part.sigma_class, direction), total);
       }
-      for (; j < n; ++j) sum0 += value[index[j]];
-      total += sum0 + sum1 + sum2 + sum3;
     }
+    for (std::size_t s = 0; s < shifts; ++s)
+      score[first + s] = static_cast<float>(static_cast<double>(total[s]) / static_cast<double>(scale_) +
+                                            static_cast<double>(zero_) * view.count);
   }
-  return static_cast<float>(static_cast<double>(total) / scale_ + static_cast<double>(zero_) * view.count);
+}
+
+float DirectionVolumes::score(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
+                              const Eigen::Vector3f& translation) const {
+  float out = 0;
+  scores(view, direction, rotation, {translation}, &out);
+  return out;
 }
 
 }  // namespace polar

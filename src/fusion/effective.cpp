@@ -45,6 +45,11 @@ Symmetric3 effective_covariance(const Symmetric3& stated, const Eigen::Vector3f&
   const auto al = static_cast<float>(noise.lateral_factor), aa = static_cast<float>(noise.axial_factor);
   const auto bl = static_cast<float>(noise.lateral_extra * noise.lateral_extra + noise.width * noise.width);
   const auto ba = static_cast<float>(noise.axial_extra * noise.axial_extra + noise.width * noise.width);
+  if (al == aa && bl == ba) {  // no direction is told apart: the same numbers with fewer products
+    const float b = bl + kSmallestVariance;
+    return {al * stated[0] * al + b, al * stated[1] * al, al * stated[2] * al,
+            al * stated[3] * al + b, al * stated[4] * al, al * stated[5] * al + b};
+  }
   const Eigen::Matrix3f along = axis * axis.transpose();
   const Eigen::Matrix3f factor = al * Eigen::Matrix3f::Identity() + (aa - al) * along;
   const Eigen::Matrix3f c = factor * matrix(stated) * factor +
@@ -58,9 +63,14 @@ KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f
   KernelLocalisations out(n);
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t j = subset.empty() ? k : subset[k];
-    const Symmetric3 c = effective_covariance(view.covariance[j], axis, noise);
     const Eigen::Vector3f x = view.points.col(static_cast<Eigen::Index>(j));
     kernel::Localisation& l = out[k];
+    if (k > 0 && view.covariance[j] == view.covariance[subset.empty() ? k - 1 : subset[k - 1]]) {
+      l = out[k - 1];  // many tables have one uncertainty for a whole particle
+      l.x = x.x(), l.y = x.y(), l.z = noise.planar ? 0 : x.z();
+      continue;
+    }
+    const Symmetric3 c = effective_covariance(view.covariance[j], axis, noise);
     if (noise.planar) {
       const float det = c[0] * c[3] - c[1] * c[1], half = 0.5f * (c[0] + c[3]);
       const float spread = std::sqrt(std::max(0.0f, half * half - det));

@@ -2,63 +2,16 @@
 // function of the wrong set behind for the linker.
 #include "mixture_kernel.hpp"
 
+#include "lanes.hpp"
+
 #define POLAR_JOIN_(a, b) a##b
 #define POLAR_JOIN(a, b) POLAR_JOIN_(a, b)
 
 namespace polar::kernel {
 namespace {
 
-typedef float V __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
-typedef int I __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
-typedef short S __attribute__((vector_size(2 * kLanes), aligned(2), may_alias));
-
-constexpr float kCutOff = 4.0f;        // a Gaussian beyond 4 standard deviations is nothing
-constexpr float kMaxBlocks = 4096;     // 65,536 centres
-constexpr float kRound = 12582912.0f;  // 1.5 x 2^23: adding it rounds to an integer
-
-inline V load(const float* p) { return *reinterpret_cast<const V*>(p); }
-inline void store(float* p, V v) { *reinterpret_cast<V*>(p) = v; }
-inline V splat(float v) { return v - V{}; }
-
-inline V exp_of(V x) {
-  // 2^i 2^f with |f| <= 1/2; the polynomial is the Taylor series of 2^f to degree 6 (1e-7 relative).
-  x = x < -87.0f ? splat(-87.0f) : x;
-  const V t = x * 1.44269504088896341f;
-  const V i = (t + kRound) - kRound;
-  const V f = t - i;
-  V p = splat(1.5403530393e-4f);
-  p = p * f + 1.3333558146e-3f;
-  p = p * f + 9.6181291076e-3f;
-  p = p * f + 5.5504108665e-2f;
-  p = p * f + 2.4022650696e-1f;
-  p = p * f + 6.9314718056e-1f;
-  p = p * f + 1.0f;
-  const I bits = (__builtin_convertvector(i, I) + 127) << 23;
-  return p * reinterpret_cast<const V&>(bits);
-}
-
-inline V log_of(V x) {
-  // x = 2^e m with m in [sqrt(1/2), sqrt(2)); ln m = 2 atanh((m-1)/(m+1)), series to degree 9.
-  I bits = reinterpret_cast<I&>(x);
-  const I e = (bits - 0x3f3504f3) >> 23;
-  bits = bits - (e << 23);
-  const V m = reinterpret_cast<V&>(bits);
-  const V s = (m - 1.0f) / (m + 1.0f), s2 = s * s;
-  V p = splat(1.0f / 9);
-  p = p * s2 + 1.0f / 7;
-  p = p * s2 + 1.0f / 5;
-  p = p * s2 + 1.0f / 3;
-  p = p * s2 + 1.0f;
-  return 2.0f * s * p + __builtin_convertvector(e, V) * 0.69314718056f;
-}
-
-inline float sum(V v) {
-  float a[kLanes];
-  store(a, v);
-  for (int half = kLanes / 2; half > 0; half /= 2)
-    for (int i = 0; i < half; ++i) a[i] += a[i + half];
-  return a[0];
-}
+constexpr float kCutOff = 4.0f;     // a Gaussian beyond 4 standard deviations is nothing
+constexpr float kMaxBlocks = 4096;  // 65,536 centres
 
 inline V quadratic_form(const Localisation& l, V dx, V dy, V dz) {
   return dx * (l.pxx * dx + 2.0f * (l.pxy * dy + l.pxz * dz)) + dy * (l.pyy * dy + 2.0f * l.pyz * dz) +
@@ -74,10 +27,7 @@ inline int blocks_in_reach(const Centres& c, const Localisation& l, int* hit) {
     const V far = radius + l.reach, sharp = radius * l.sharpest + kCutOff;
     const I near = (dx * dx + dy * dy + dz * dz < far * far) &
                    (quadratic_form(l, dx, dy, dz) < sharp * sharp) & (radius >= 0.0f);
-    for (int i = 0; i < kLanes; ++i) {
-      hit[hits] = g + i;
-      hits += near[i] & 1;
-    }
+    for (unsigned bits = bits_of(near); bits != 0; bits &= bits - 1) hit[hits++] = g + __builtin_ctz(bits);
   }
   return hits;
 }
@@ -146,13 +96,10 @@ void accumulate(const Centres& c, const Localisation* l, int n, float background
 
 void add_gaussian_row(float* row, int begin, int end, float amplitude, float a, float b, float c) {
   V i = V{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15} + static_cast<float>(begin);
-  int k = begin;
-  for (; k + kLanes <= end; k += kLanes, i += static_cast<float>(kLanes))
-    store(row + k, load(row + k) + amplitude * exp_of(-0.5f * (a + i * (b + c * i))));
-  if (k < end) {
-    float rest[kLanes];
-    store(rest, amplitude * exp_of(-0.5f * (a + i * (b + c * i))));
-    for (int r = 0; k < end; ++k, ++r) row[k] += rest[r];
+  const float last = static_cast<float>(end);
+  for (int k = begin; k < end; k += kLanes, i += static_cast<float>(kLanes)) {
+    const V value = amplitude * exp_of(-0.5f * (a + i * (b + c * i)));
+    store(row + k, load(row + k) + (i < last ? value : splat(0)));
   }
 }
 
@@ -166,33 +113,58 @@ void quantise_log(const float* in, int n, float zero, float scale, short* out) {
   }
 }
 
-inline V clip(V v, int dim) {
-  const float high = static_cast<float>(dim - 1);
+inline V nearest(V v, float high) {
   v = v < 0.0f ? splat(0) : v;
-  return v > high ? splat(high) : v;
+  v = v > high ? splat(high) : v;
+  return (v + kRound) - kRound;
 }
 
-void voxel_index(const float* x, const float* y, const float* z, int n, const float* r, const float* t,
-                 const int* dim, int* index) {
+void rotate(const float* x, const float* y, const float* z, int n, const float* r, float* u, float* v,
+            float* w) {
   for (int k = 0; k < n; k += kLanes) {
     const V a = load(x + k), b = load(y + k), c = load(z + k);
-    V u = r[0] * a + r[1] * b + r[2] * c + t[0];
-    V v = r[3] * a + r[4] * b + r[5] * c + t[1];
-    V w = r[6] * a + r[7] * b + r[8] * c + t[2];
-    u = (clip(u, dim[0]) + kRound) - kRound;
-    v = (clip(v, dim[1]) + kRound) - kRound;
-    w = (clip(w, dim[2]) + kRound) - kRound;
-    const I i = __builtin_convertvector(u, I), j = __builtin_convertvector(v, I),
-            m = __builtin_convertvector(w, I);
-    *reinterpret_cast<I*>(index + k) = (m * dim[1] + j) * dim[0] + i;
+    store(u + k, r[0] * a + r[1] * b + r[2] * c);
+    store(v + k, r[3] * a + r[4] * b + r[5] * c);
+    store(w + k, r[6] * a + r[7] * b + r[8] * c);
   }
+}
+
+void nearest_sums(const float* u, const float* v, const float* w, int n, const float* offset, int shifts,
+                  const int* dim, const short* value, long long* sum_out) {
+  const float width = static_cast<float>(dim[0]), height = static_cast<float>(dim[1]);
+  const float high_u = width - 1, high_v = height - 1, high_w = static_cast<float>(dim[2] - 1);
+  int voxel[kMostPoints];  // in memory: lanes are slow to take out of a register
+  for (int s = 0; s < shifts; ++s, offset += 3) {
+    for (int k = 0; k < n; k += kLanes) {
+      const V a = nearest(load(u + k) + offset[0], high_u), b = nearest(load(v + k) + offset[1], high_v),
+              c = nearest(load(w + k) + offset[2], high_w);
+      *reinterpret_cast<I*>(voxel + k) = __builtin_convertvector((c * height + b) * width + a, I);
+    }
+    int sum0 = 0, sum1 = 0, sum2 = 0, sum3 = 0, i = 0;
+    for (; i + 4 <= n; i += 4) {
+      sum0 += value[voxel[i]], sum1 += value[voxel[i + 1]];
+      sum2 += value[voxel[i + 2]], sum3 += value[voxel[i + 3]];
+    }
+    for (; i < n; ++i) sum0 += value[voxel[i]];
+    sum_out[s] += sum0 + sum1 + sum2 + sum3;
+  }
+}
+
+int weighted_densities(const Centres& c, const Localisation& l, int* index, float* density_out) {
+  int hit[static_cast<int>(kMaxBlocks) + kLanes];
+  const int hits = blocks_in_reach(c, l, hit);
+  for (int h = 0; h < hits; ++h) {
+    store(density_out + h * kLanes, weighted_density(c, l, hit[h]));
+    for (int i = 0; i < kLanes; ++i) index[h * kLanes + i] = hit[h] * kLanes + i;
+  }
+  return hits;
 }
 
 }  // namespace
 
 const MixtureKernel& POLAR_JOIN(mixture_kernel_, POLAR_ISA)() {
-  static constexpr MixtureKernel kernel{density,          moments,      accumulate,
-                                        add_gaussian_row, quantise_log, voxel_index};
+  static constexpr MixtureKernel kernel{density,      moments, accumulate,   add_gaussian_row,
+                                        quantise_log, rotate,  nearest_sums, weighted_densities};
   return kernel;
 }
 

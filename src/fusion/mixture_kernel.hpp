@@ -33,6 +33,8 @@ struct Moments {
 // Sums of a maximisation step: for each centre 1, C^-1 (6), C^-1 x (3), each times the responsibility.
 constexpr int kSums = 10;
 
+constexpr int kMostPoints = 256;  // of one call of nearest_sums: what it keeps fits the first-level cache
+
 struct MixtureKernel {
   // density[j] of each localisation.
   void (*density)(const Centres&, const Localisation*, int n, float* density);
@@ -42,14 +44,22 @@ struct MixtureKernel {
   // inlier[j] receives total / (total + background), scratch holds 16 x blocks floats.
   void (*accumulate)(const Centres&, const Localisation*, int n, float background, float* sums, float* inlier,
                      float* density, float* scratch);
-  // row[i] += amplitude * exp(-(a + b i + c i^2) / 2) for i in [begin, end).
+  // row[i] += amplitude * exp(-(a + b i + c i^2) / 2) for i in [begin, end); the 15 numbers beyond are
+  // rewritten as they are.
   void (*add_gaussian_row)(float* row, int begin, int end, float amplitude, float a, float b, float c);
   // out[i] = round(scale * (ln(in[i]) - zero)) clipped to int16.
   void (*quantise_log)(const float* in, int n, float zero, float scale, short* out);
-  // index[i] of the voxel nearest to rotation x point + offset; rotation is row-major and scaled, so that the
-  // result is in voxels; points outside take the border's voxel. Arrays are padded to a multiple of 16.
-  void (*voxel_index)(const float* x, const float* y, const float* z, int n, const float* rotation,
-                      const float* offset, const int* dim, int* index);
+  // u, v, w = rotation x point; rotation is row-major. Arrays are padded to a multiple of 16.
+  void (*rotate)(const float* x, const float* y, const float* z, int n, const float* rotation, float* u,
+                 float* v, float* w);
+  // sum[s] += sum over i < n of the value at the voxel nearest to (u, v, w)_i + offset s, all in voxels;
+  // points outside take the border's voxel. `offset` holds three numbers a shift. Arrays are padded to a
+  // multiple of 16; n is at most kMostPoints and a volume has at most 2^24 voxels.
+  void (*nearest_sums)(const float* u, const float* v, const float* w, int n, const float* offset, int shifts,
+                       const int* dim, const short* value, long long* sum);
+  // The centres within reach of one localisation: their indices, in whole blocks, and their weighted
+  // densities. Returns how many blocks; both arrays have room for all centres.
+  int (*weighted_densities)(const Centres&, const Localisation&, int* index, float* density);
 };
 
 const MixtureKernel& mixture_kernel_portable();

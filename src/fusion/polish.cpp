@@ -10,6 +10,7 @@
 #include "fusion_data_impl.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/so3.hpp"
+#include "pose_terms.hpp"
 #include "view_likelihood.hpp"
 
 namespace polar {
@@ -18,54 +19,14 @@ namespace {
 
 constexpr int kResponsibilityRounds = 2;
 constexpr int kIterations = 8;
-constexpr float kLeastResponsibility = 1e-3f;  // of a centre for a localisation to keep the pair
-constexpr double kDifference = 1e-4;           // step of the second derivative, rad and particle radii
+constexpr double kDifference = 1e-4;  // step of the second derivative, rad and particle radii
 
-struct Pair {
-  Eigen::Vector3d centre;  // template frame
-  Eigen::Vector3d x;       // localisation, frame of the view
-  Eigen::Matrix3d root;    // sqrt(r) C^(-1/2): root^T root = r C^-1
-};
-
-// Pairs of localisation and centre with their responsibility at a pose.
-std::vector<Pair> pairs_at(const Mixture& m, const std::vector<float>& visibility,
-                           const KernelLocalisations& view, const Pose& view_from_template) {
-  std::vector<Pair> pairs;
-  Eigen::ArrayXf weight(m.size());
-  Eigen::Matrix3Xf moved(3, m.size()), difference(3, m.size());
-  Eigen::ArrayXf prior = m.weight.array() * static_cast<float>(1 - m.outlier_fraction);
-  if (!visibility.empty()) prior *= Eigen::Map<const Eigen::ArrayXf>(visibility.data(), m.size());
-  const Eigen::Matrix3f r = view_from_template.rotation.cast<float>();
-  moved = (r * m.centre).colwise() + view_from_template.translation.cast<float>().eval();
-  const auto background = static_cast<float>(m.outlier_fraction * m.outlier_density);
-  for (const kernel::Localisation& l : view) {
-    Eigen::Matrix3f p;
-    p << l.pxx, l.pxy, l.pxz, l.pxy, l.pyy, l.pyz, l.pxz, l.pyz, l.pzz;
-    const Eigen::Vector3f x(l.x, l.y, l.z);
-    difference = moved.colwise() - x;
-    weight = (-0.5f * (difference.array() * (p * difference).array()).colwise().sum().transpose()).exp() *
-             prior * l.norm;
-    const float total = background + weight.sum();
-    // P may be singular (planar): its root by eigenvalues.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(p.cast<double>());
-    const Eigen::Matrix3d root =
-        eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
-    for (Eigen::Index k = 0; k < m.size(); ++k) {
-      const float responsibility = weight[k] / total;
-      if (responsibility > kLeastResponsibility)
-        pairs.push_back({m.centre.col(k).cast<double>(), x.cast<double>(),
-                         std::sqrt(static_cast<double>(responsibility)) * root});
-    }
-  }
-  return pairs;
-}
-
-// Residuals of all pairs of one view; parameters are the step (w, v) from a reference pose.
+// Residuals of all terms of one view; parameters are the step (w, v) from a reference pose.
 class ViewResiduals : public ceres::CostFunction {
  public:
-  ViewResiduals(const std::vector<Pair>& pairs, const Pose& reference)
-      : pairs_(pairs), reference_(reference) {
-    set_num_residuals(static_cast<int>(3 * pairs.size()));
+  ViewResiduals(const std::vector<Term>& terms, const Pose& reference)
+      : terms_(terms), reference_(reference) {
+    set_num_residuals(static_cast<int>(3 * terms.size()));
     mutable_parameter_block_sizes()->push_back(6);
   }
 
@@ -74,16 +35,21 @@ class ViewResiduals : public ceres::CostFunction {
     const Eigen::Vector3d w = step.head<3>();
     const Eigen::Matrix3d turn = so3_exp(w);
     const Eigen::Matrix3d left = left_jacobian(w);
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      const Pair& pair = pairs_[i];
-      const Eigen::Vector3d turned = turn * (reference_ * pair.centre);
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+      const Term& term = terms_[i];
+      const Eigen::Vector3d turned =
+          turn * (term.moves ? reference_ * term.centre : reference_.rotation * term.centre);
       const auto row = static_cast<Eigen::Index>(3 * i);
-      Eigen::Map<Eigen::Vector3d>(residuals + row) = pair.root * (turned + step.tail<3>() - pair.x);
+      const Eigen::Vector3d shift = term.moves ? Eigen::Vector3d(step.tail<3>()) : Eigen::Vector3d::Zero();
+      Eigen::Map<Eigen::Vector3d>(residuals + row) = term.root * (turned + shift - term.x);
       if (!jacobians || !jacobians[0]) continue;
       Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>> j(jacobians[0], num_residuals(),
                                                                               6);
-      j.block<3, 3>(row, 0) = -pair.root * cross_matrix(turned) * left;
-      j.block<3, 3>(row, 3) = pair.root;
+      j.block<3, 3>(row, 0) = -term.root * cross_matrix(turned) * left;
+      if (term.moves)
+        j.block<3, 3>(row, 3) = term.root;
+      else
+        j.block<3, 3>(row, 3).setZero();
     }
     return true;
   }
@@ -98,15 +64,15 @@ class ViewResiduals : public ceres::CostFunction {
            (a - std::sin(a)) / (a * a * a) * k * k;
   }
 
-  const std::vector<Pair>& pairs_;
+  const std::vector<Term>& terms_;
   Pose reference_;
 };
 
-Pose least_squares(const std::vector<Pair>& pairs, const Pose& start, bool planar) {
+Pose least_squares(const std::vector<Term>& terms, const Pose& start, bool planar) {
   double step[6] = {0, 0, 0, 0, 0, 0};
   ceres::Problem problem;
   problem.AddParameterBlock(step, 6, planar ? new ceres::SubsetManifold(6, {0, 1, 5}) : nullptr);
-  problem.AddResidualBlock(new ViewResiduals(pairs, start), nullptr, step);
+  problem.AddResidualBlock(new ViewResiduals(terms, start), nullptr, step);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   options.max_num_iterations = kIterations;
@@ -176,10 +142,11 @@ std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
     const float* weight = view_weight(data, i, blocked.weight(), buffer);
     Pose pose = poses[i].inverse();
     double best = log_likelihood(frame, view, pose, background, weight);
+    const std::vector<Eigen::Matrix3d> roots = roots_of(view);
     for (int round = 0; round < kResponsibilityRounds; ++round) {
-      const std::vector<Pair> pairs = pairs_at(mixture, data.visibility(i), view, pose);
-      if (pairs.size() < 3) break;
-      const Pose next = least_squares(pairs, pose, data.planar());
+      const std::vector<Term> terms = terms_at(mixture, frame.at(pose, weight), background, view, roots);
+      if (terms.size() < 3) break;
+      const Pose next = least_squares(terms, pose, data.planar());
       const double there = log_likelihood(frame, view, next, background, weight);
       if (!(there > best)) break;
       best = there, pose = next, result.improved = true;

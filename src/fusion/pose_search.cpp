@@ -14,13 +14,18 @@ void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen:
            float step, Eigen::Vector3f& translation, float& best) {
   constexpr int kMostSteps = 6;
   const int direction = volumes.direction_of(view, rotation);
+  std::vector<float> there;
   for (int half = 0; half < 2; ++half, step *= 0.5f) {
+    const std::vector<Eigen::Vector3f> shifts = axis_shifts(step, false);
     for (int s = 0; s < kMostSteps; ++s) {
       const Eigen::Vector3f here = translation;
-      for (const Eigen::Vector3f& shift : axis_shifts(step, false)) {
-        const float there = volumes.score(view, direction, rotation, here + shift);
-        if (there > best) best = there, translation = here + shift;
-      }
+      std::vector<Eigen::Vector3f> around;
+      for (std::size_t a = 1; a < shifts.size(); ++a)
+        around.push_back(here + shifts[a]);  // the first is none
+      there.resize(around.size());
+      volumes.scores(view, direction, rotation, around, there.data());
+      for (std::size_t a = 0; a < around.size(); ++a)
+        if (there[a] > best) best = there[a], translation = around[a];
       if (translation == here) break;
     }
   }
@@ -60,14 +65,13 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
     by_direction[static_cast<std::size_t>(volumes.direction_of(view, turned[i]))].push_back(i);
   }
   // All rotations that read one volume in a row: it then stays in the cache.
+  std::vector<float> there(options.translation.size());
   for (std::size_t d = 0; d < by_direction.size(); ++d)
     for (const std::size_t i : by_direction[d]) {
-      float best = -INFINITY;
-      for (const Eigen::Vector3f& t : options.translation) {
-        const float there = volumes.score(view, static_cast<int>(d), turned[i], t);
-        if (there > best) best = there, out.translation[i] = t;
-      }
-      out.log_likelihood[i] = best;
+      volumes.scores(view, static_cast<int>(d), turned[i], options.translation, there.data());
+      const auto best = std::max_element(there.begin(), there.end());  // the first of equal ones
+      out.log_likelihood[i] = *best;
+      out.translation[i] = options.translation[static_cast<std::size_t>(best - there.begin())];
     }
   if (options.step <= 0 || options.promising <= 0) return out;
   std::vector<int> order(n);

@@ -15,8 +15,8 @@ except ImportError as missing:
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
-from benchmark import poses, report, runner, study  # noqa: E402
-from benchmark.program import Failed, NothingRegistered, Program, Refused, measured  # noqa: E402
+from benchmark import peers, poses, report, runner, study  # noqa: E402
+from benchmark.program import Failed, NothingRegistered, Program, Refused, alone, measured, process  # noqa: E402
 
 POLAR = Path(os.environ.get("POLAR_PROGRAM", ROOT / "build/src/cli/polar"))
 ROUNDING_DEG = 1e-6  # of doubles written with the shortest digits that read back
@@ -137,6 +137,46 @@ class Failures(unittest.TestCase):
         with self.assertRaises(Failed) as caught:
             self.ends_with(3)
         self.assertNotIsInstance(caught.exception, NothingRegistered)
+
+
+class Limits(unittest.TestCase):
+    def test_a_program_is_cut_off_at_its_processor_time(self):
+        ended = process([sys.executable, "-S", "-c", "while True: pass"], limit_cpu_s=0.2)
+        self.assertTrue(ended.cut_off)
+        self.assertGreater(ended.cost.cpu_s, 0.1)
+        self.assertLess(ended.cost.cpu_s, 5)
+
+    def test_sleeping_costs_no_processor_time(self):
+        ended = process([sys.executable, "-S", "-c", "import time; time.sleep(0.5); print('done')"], limit_cpu_s=0.4)
+        self.assertFalse(ended.cut_off)
+        self.assertEqual((ended.code, ended.out), (0, "done\n"))
+
+    def test_runs_with_one_lock_take_turns(self):
+        with tempfile.TemporaryDirectory() as folder:
+            lock = Path(folder) / "lock"
+            probe = f"import fcntl; fcntl.flock(open({str(lock)!r}, 'a'), fcntl.LOCK_EX | fcntl.LOCK_NB)"
+            with alone(lock):
+                self.assertEqual(process([sys.executable, "-c", probe]).code, 1)
+            self.assertEqual(process([sys.executable, "-c", probe]).code, 0)
+
+
+class Peers(unittest.TestCase):
+    def test_a_program_that_is_not_installed_is_said_and_not_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            python = Path(folder) / "python"
+            python.write_text(f"#!/bin/sh\necho 'not installed: that' >&2\nexit {NOT_INSTALLED}\n")
+            python.chmod(0o755)
+            with self.assertRaises(peers.Missing) as caught:
+                peers.peer(None, python, "open3d_pairs", [], 10, Path(folder), Path(folder) / "poses.csv")
+        self.assertEqual(str(caught.exception), "not installed: that")
+
+    def test_a_failure_is_a_row_with_its_reason(self):
+        with tempfile.TemporaryDirectory() as folder:
+            python = Path(folder) / "python"
+            python.write_text("#!/bin/sh\necho 'it broke' >&2\nexit 1\n")
+            python.chmod(0o755)
+            row = peers.peer(None, python, "open3d_pairs", [], 10, Path(folder), Path(folder) / "poses.csv")
+        self.assertEqual(row, {"skipped": "failed: it broke"})
 
 
 class Kept(unittest.TestCase):

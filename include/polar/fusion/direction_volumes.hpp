@@ -56,7 +56,9 @@ class DirectionVolumes {
   int direction_of(const SearchView& view, const Eigen::Matrix3f& rotation) const;
   int directions() const { return static_cast<int>(direction_.size()); }
 
-  /// sum_j ln p(R x_j + t), nearest voxel, in the volume of direction_of(view, R).
+  /// sum_j ln p(R x_j + t), nearest voxel, in the volume of direction_of(view, R), for each t.
+  void scores(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
+              const std::vector<Eigen::Vector3f>& translation, float* score) const;
   float score(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
               const Eigen::Vector3f& translation) const;
 

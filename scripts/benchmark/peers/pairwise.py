@@ -22,6 +22,12 @@ def read_views(path):
     return [(name, (np.array(p) - np.mean(p, axis=0)) / 100, np.mean(p, axis=0)) for name, p in points.items()]
 
 
+def mean_sigma_nm(path):
+    """Mean standard deviation along x, y, z of a table."""
+    with open(path, encoding="utf-8") as file:
+        return np.mean([[float(row[f"uncertainty_{a} [nm]"]) for a in "xyz"] for row in csv.DictReader(file)], axis=0)
+
+
 def nearest_rotation(m):
     u, _, vt = np.linalg.svd(m)
     return u @ np.diag([1, 1, np.linalg.det(u @ vt)]) @ vt

@@ -1,5 +1,6 @@
 """probreg's coherent point drift and FilterReg (rigid), all pairs from the pose as imaged, synchronised. Both are local."""
 import argparse
+from importlib.metadata import version
 
 import pairwise
 
@@ -25,7 +26,7 @@ def main():
         return pairwise.nearest_rotation(motion.rot), 1.0
 
     pairwise.write_poses(a.poses, views, pairwise.register_all(views, register))
-    print("probreg 0.3")
+    print(f"probreg {version('probreg')}")
 
 
 if __name__ == "__main__":

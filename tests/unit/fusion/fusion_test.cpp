@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fixture.hpp"
+#include "polar/core/isa.hpp"
 #include "polar/fusion/calibration.hpp"
 #include "polar/fusion/direction_volumes.hpp"
 #include "polar/fusion/discretise.hpp"
@@ -119,6 +120,30 @@ TEST(DirectionVolumes, scoresRankPosesAsTheMixtureDoes) {
   EXPECT_GT(ab / std::sqrt(aa * bb), 0.98);
   EXPECT_EQ(std::max_element(exact.begin(), exact.end()) - exact.begin() < 5,
             std::max_element(looked_up.begin(), looked_up.end()) - looked_up.begin() < 5);
+}
+
+TEST(DirectionVolumes, manyShiftsAtATimeScoreAsEachAloneInEveryInstructionSet) {
+  const Scene scene(1, 300, 0.05f, 0.12f);  // more localisations than one batch, not a multiple of 16
+  const NoiseModel noise = scene.noise(0.05);
+  const SigmaClasses classes = sigma_classes(scene.set, scene.axes, noise, 2);
+  const DirectionVolumes volumes(scene.mixture, classes, directions_for(classes, false), false);
+  const SearchView view = search_view(scene.set.view[0], scene.axes[0], noise, classes, {});
+  const Eigen::Matrix3f r = scene.pose[0].rotation.cast<float>();
+  const int direction = volumes.direction_of(view, r);
+  std::vector<Eigen::Vector3f> shift;
+  for (std::uint64_t i = 0; i < 100; ++i) shift.push_back(4 * random_pose(i).translation.cast<float>());
+  for (const Isa isa : {Isa::portable, Isa::avx2, Isa::avx512}) {
+    if (detected_isa() < isa) continue;
+    limit_isa(isa);
+    std::vector<float> together(shift.size());
+    volumes.scores(view, direction, r, shift, together.data());
+    for (std::size_t s = 0; s < shift.size(); ++s)
+      EXPECT_EQ(together[s], volumes.score(view, direction, r, shift[s])) << name(isa) << ", shift " << s;
+    EXPECT_GT(*std::max_element(together.begin(), together.end()) -
+                  *std::min_element(together.begin(), together.end()),
+              1);
+  }
+  limit_isa(Isa::avx512);
 }
 
 TEST(Calibration, recoversWhatTheTableStatesWrongly) {
