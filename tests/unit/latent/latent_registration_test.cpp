@@ -67,6 +67,20 @@ TEST(RegisterLatent, findsThemWithADecodedTemplateToo) {
   EXPECT_GE(recall(error, 10), 0.8);
 }
 
+TEST(RegisterLatent, decodesItsTemplateWhereOutliersAreExpected) {
+  const fixture::Posed p = fixture::posed_views(6, 200, 0.02f, 0.06f, 4);
+  LatentOptions options = small();
+  options.localisations = 200;
+  options.most_loops = 1;
+  const auto template_points = [&](const char* kind, double outliers) {
+    options.template_kind = kind;
+    options.outlier_fraction = outliers;
+    return registered(p.views, options).template_points;
+  };
+  EXPECT_EQ(template_points("fused", 0.3), template_points("decoded", 0.3));
+  EXPECT_NE(template_points("fused", 0), template_points("decoded", 0));
+}
+
 TEST(RegisterLatent, turnsWithItsInput) {
   fixture::Posed p = fixture::posed_views(12, 600, 0.02f, 0.02f, 5);
   const LatentRegistration before = registered(p.views, small());
