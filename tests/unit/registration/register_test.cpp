@@ -117,6 +117,8 @@ TEST(RegisterViews, continuesFromTheStatesItKeepsToTheSameBits) {
   const Simulated s = simulated(o);
   RegistrationOptions options;
   options.starts = {"polar", "imaged"};
+  options.latent.rotations = 300;
+  options.latent.localisations = 100;
   Interrupting whole;
   const Registration expected = register_views(s.views, options, whole, whole);
   EXPECT_THAT(whole.names,
@@ -164,8 +166,10 @@ TEST(RegisterViews, aViewWithTooFewLocalisationsIsNotAcceptedAndSaysWhy) {
   s.views.view[4].covariance.resize(2);
   s.views.view[5].points.resize(3, 0);
   s.views.view[5].covariance.clear();
+  RegistrationOptions options;
+  options.starts = {"imaged"};
   Progress silent;
-  const Registration r = register_views(s.views, {}, silent);
+  const Registration r = register_views(s.views, options, silent);
   EXPECT_FALSE(r.view[4].accepted);
   EXPECT_FALSE(r.view[5].accepted);
   EXPECT_NE(r.view[4].reason.find("localisations"), std::string::npos);
@@ -174,8 +178,10 @@ TEST(RegisterViews, aViewWithTooFewLocalisationsIsNotAcceptedAndSaysWhy) {
 
 TEST(RegisterFrom, trueOrFoundPosesEndAtTheSameLikelihood) {
   const Simulated s = simulated(small(3));
+  RegistrationOptions options;
+  options.starts = {"random"};
   Progress silent;
-  const Registration found = register_views(s.views, {}, silent);
+  const Registration found = register_views(s.views, options, silent);
   std::vector<Pose> given;
   for (const auto& v : found.view) given.push_back(v.template_from_view);
   const Registration again = register_from(s.views, given, {}, silent);
