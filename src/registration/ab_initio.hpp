@@ -25,7 +25,8 @@ StartContext start_context(const Problem& problem);
 
 struct AnnealingOptions {
   int sweeps = 30;
-  double first_width = 0.30, last_width = 0.07;  // of the template, in particle radii
+  int centres = 160;
+  double first_width = 0.30, last_width = 0.10;  // of the template, in particle radii
   double first_beta = 0.05, last_beta = 1.0;     // inverse temperature of the pose posterior
   int rotations = 600;
   float shift = 0.12f;    // of the translations tried

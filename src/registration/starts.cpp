@@ -1,6 +1,7 @@
 #include "starts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "assembly.hpp"
 #include "finish.hpp"
@@ -13,12 +14,12 @@ namespace {
 
 constexpr int kFewestRandom = 3, kMostRandom = 12;
 constexpr double kLookUpBudget =
-    3.0e9;  // over all random starts: seconds on two cores, whatever the size of the set
-constexpr int kLongStarts = 6, kMostSweeps = 60;
-constexpr int kFirstCentres = 320;
+    3.0e9;                      // over all random starts: seconds on two cores, whatever the size of the set
+constexpr int kLongStarts = 6;  // that the budget must allow
+constexpr double kLongest = 2.0;  // times the usual
 constexpr int kMostFinalists = 5;
 constexpr double kFinalistLocalisations =
-    60000;  // views x localisations that the finalists may cost together
+    130000;  // views x localisations that the finalists may cost together
 
 double localisations(const StartContext& context) {
   double total = 0;
@@ -28,13 +29,15 @@ double localisations(const StartContext& context) {
 }
 
 // What the budget buys: where localisations are few a start is cheap and often fails, so starts are long
-// there and many.
+// there, with a template of more centres that ends sharper, and many.
 AnnealingOptions annealing(const StartContext& context) {
   AnnealingOptions options;
   const double look_ups_of_a_sweep = localisations(context) * options.rotations * 7.0;
-  options.sweeps =
-      std::clamp(static_cast<int>(kLookUpBudget / kLongStarts / std::max(1.0, look_ups_of_a_sweep)),
-                 options.sweeps, kMostSweeps);
+  const double longer = std::clamp(
+      kLookUpBudget / kLongStarts / std::max(1.0, look_ups_of_a_sweep) / options.sweeps, 1.0, kLongest);
+  options.sweeps = static_cast<int>(options.sweeps * longer);
+  options.centres = static_cast<int>(options.centres * longer);
+  options.last_width /= std::sqrt(longer);
   return options;
 }
 
@@ -61,11 +64,11 @@ std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartConte
     if (k < random) {
       const bool crowded = k % 2 == 0;
       const StartContext& context = crowded ? thinned : plain;
-      hypotheses.push_back(random_start(context, kFirstCentres, k, crowded));
+      hypotheses.push_back(random_start(context, options.centres, k, crowded));
       anneal(context, options, false, hypotheses.back());
     } else {
-      hypotheses.push_back(polar && k == random ? polar_start(plain, *model, wishes, kFirstCentres, k)
-                                                : imaged_start(plain, kFirstCentres, k));
+      hypotheses.push_back(polar && k == random ? polar_start(plain, *model, wishes, options.centres, k)
+                                                : imaged_start(plain, options.centres, k));
       AnnealingOptions gentle = options;  // the poses are meant to be near: begin narrower and colder
       gentle.first_width = 0.2;
       gentle.first_beta = 1;
