@@ -1,0 +1,56 @@
+"""Faults from outside: memory that runs out, odd files and names, terminals that are none."""
+import os
+import resource
+import unittest
+
+from harness import PolarCase
+
+TINY = "simulation: {particles: 3, blinks_mean: 2, cramer_rao: false}"
+
+
+class Memory(PolarCase):
+    def setUp(self):
+        super().setUp()
+        self.simulate(TINY)
+        self.config = self.run_config(more="registration: {starts: [imaged]}\n")
+        self.ok("run", self.config)
+        self.whole = self.poses()
+
+    def poses(self):
+        return (self.folder / "results" / "poses.csv").read_bytes()
+
+    def ends_cleanly(self, *arguments, **options):
+        """Whether the run was made; otherwise it said in one line that it got no memory."""
+        done = self.polar("run", self.config, "--overwrite", "--quiet", *arguments, **options)
+        self.assertEqual(self.poses(), self.whole)
+        self.assertEqual([path for path in (self.folder / "results").glob(".*.tmp")], [])
+        if done.returncode == 0:
+            return True
+        self.assertEqual(done.returncode, 6, done.stderr)
+        self.assertRegex(done.stderr, r"\Aerror: (out of memory|no thread could be started): [^\n]+\n\Z")
+        return False
+
+    @unittest.skipUnless("FAULTY_MEMORY" in os.environ, "faulty_memory is not built")
+    def test_the_nth_allocation_fails(self):
+        # Without HDF5, which crashes where it gets no memory; the next test is about it.
+        formats = ("--set", "output.formats=[csv]", "--set", "output.preview=false")
+        for fault in ("once", "always"):
+            nth, made = 1, False
+            while not made or nth < 5000:  # a cache can do without, so one success early on proves nothing
+                made = self.ends_cleanly(*formats, env={"LD_PRELOAD": os.environ["FAULTY_MEMORY"],
+                                                       "FAULT": fault, "NTH": str(nth)})
+                nth = nth * 3 + 1
+            self.assertGreater(nth, 50000, fault)
+
+    def test_any_limit_on_the_address_space(self):
+        megabytes, made = 60, False  # the program and its libraries are loaded in less
+        while not made:
+            limit = megabytes << 20
+            made = self.ends_cleanly(
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+            megabytes += 5
+        self.assertGreater(megabytes, 65)
+
+
+if __name__ == "__main__":
+    unittest.main()
