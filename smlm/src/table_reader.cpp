@@ -7,12 +7,12 @@
 #include <cstring>
 
 #include "concatenate.hpp"
-#include "isolation.hpp"
 #include "mat_v5.hpp"
 #include "readers/readers.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
 #include "smlm/inspect.hpp"
+#include "smlm/isolation.hpp"
 #include "smlm/pick.hpp"
 
 namespace smlm {

@@ -6,6 +6,7 @@
 #include "polar/pipeline/outputs.hpp"
 #include "polar/results/result_file.hpp"
 #include "smlm/error.hpp"
+#include "smlm/isolation.hpp"
 
 namespace polar::cli {
 
@@ -23,7 +24,7 @@ int run(const Arguments& a) {
   const std::string output = !a.output.empty() ? a.output : beside.empty() ? "." : beside.string();
   if (!std::filesystem::is_directory(output))
     throw smlm::Error(smlm::Fault::io, output, "no such directory", "create it first");
-  ResultRecord result = read_result_file(record);
+  ResultRecord result = smlm::read_isolated(record, [&] { return read_result_file(record); });
   result.render.voxel_nm = a.voxel_nm;
   for (const std::string& format : a.formats)
     for (const std::string& name : write_format(format, output, result.superparticle, result.render))
