@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <initializer_list>
 #include <new>
 
@@ -60,6 +61,8 @@ int report_exception() {
   } catch (const std::bad_alloc&) {
     return report(kResource, {"out of memory: use fewer localisations, a coarser output.voxel_nm or a larger "
                               "machine"});
+  } catch (const std::filesystem::filesystem_error& e) {
+    return report(static_cast<int>(smlm::Fault::io), {e.what(), ": check the path"});
   } catch (const std::exception& e) {
     // Threads are made by a library that says so only in words.
     if (std::strstr(e.what(), "pthread_create") != nullptr)

@@ -39,9 +39,10 @@ OutputDirectory::OutputDirectory(const std::string& path, const RunFlags& flags)
     : path_(path), lock_path_(file(kLock)) {
   std::error_code ec;
   std::filesystem::create_directories(path, ec);
-  if (!std::filesystem::is_directory(path)) {
-    const bool in_the_way = std::filesystem::exists(path);
-    fail(path, in_the_way ? "is not a directory" : "cannot be created: " + ec.message(),
+  std::error_code unseen;
+  if (!std::filesystem::is_directory(path, unseen)) {
+    const bool in_the_way = std::filesystem::exists(path, unseen);
+    fail(path, in_the_way ? "is not a directory" : "cannot be created: " + (ec ? ec : unseen).message(),
          "choose another output.directory");
   }
   lock_ = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);

@@ -264,8 +264,10 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   const std::vector<std::string> written = write(r, config, directory);
   const double seconds = watch.seconds();
   const std::vector<std::string> lines = describe(r, config.output.directory, seconds);
-  smlm::write_file_atomically(directory.file(kSummary),
-                              summary_json(r, lines, written, seconds).dump(2) + "\n");
+  // A name need not be UTF-8, what JSON holds must.
+  const std::string summary =
+      summary_json(r, lines, written, seconds).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  smlm::write_file_atomically(directory.file(kSummary), summary + "\n");
   std::vector<std::string> kept = written;
   kept.emplace_back(kSummary);
   directory.remove_other_results(kept);

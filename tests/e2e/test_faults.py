@@ -1,4 +1,5 @@
 """Faults from outside: memory that runs out, odd files and names, terminals that are none."""
+import json
 import os
 import resource
 import unittest
@@ -50,6 +51,45 @@ class Memory(PolarCase):
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
             megabytes += 5
         self.assertGreater(megabytes, 65)
+
+
+class OddFiles(PolarCase):
+    def setUp(self):
+        super().setUp()
+        self.data = self.simulate(TINY)
+        os.mkfifo(self.folder / "pipe")
+        os.symlink("loop", self.folder / "loop")
+
+    def test_pipes_devices_and_loops_are_refused_at_once(self):
+        for name in ("pipe", "/dev/zero", "data"):
+            self.fails(3, "not a regular file", "run", self.run_config(name))
+            self.fails(3, "not a regular file", "inspect", name)
+        for name in ("pipe", "/dev/zero"):
+            self.fails(2, "not a regular file", "run", name)
+            self.fails(3, "not a regular file", "evaluate", name, "--truth", self.data / "poses.csv")
+            self.fails(3, "not a regular file", "export", name, "--to", "csv")
+        self.fails(4, "levels of symbolic links", "run", self.run_config("loop"))
+        self.fails(4, "levels of symbolic links", "export", "loop", "--to", "csv")
+        self.fails(2, "no such file", "run", "loop")
+
+    def test_output_that_cannot_be(self):
+        config = self.run_config()
+        self.fails(4, "cannot be created", "run", config, "--output", "d" * 300)
+        self.fails(4, "cannot be created", "run", config, "--output", "loop")
+        self.fails(4, "not a directory", "run", config, "--output", "pipe")
+
+    def test_names_are_only_bytes(self):
+        name = b"new\nline $(touch told) \xe9.csv"
+        os.rename(self.data / "localisations.csv", os.path.join(os.fsencode(self.data), name))
+        config = self.run_config("data/new*.csv", more="registration: {starts: [imaged]}\n")
+        self.ok("run", config, "--output", os.fsdecode(b"out \xe9"))
+        done = json.loads((self.folder / os.fsdecode(b"out \xe9") / "summary.json").read_text())
+        self.assertEqual(done["particles"], 3)
+        self.assertFalse((self.folder / "told").exists())
+
+    def test_a_truth_that_says_something_else(self):
+        (self.data / "truth.json").write_text('{"structure": 3}')
+        self.fails(3, "truth.json", "evaluate", self.data, "--truth", self.data / "poses.csv")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -13,6 +12,7 @@
 
 #include "handle.hpp"
 #include "smlm/atomic_file.hpp"
+#include "smlm/regular_file.hpp"
 
 namespace smlm::h5 {
 namespace {
@@ -113,15 +113,10 @@ bool File::is_hdf5(const std::string& path) {
 
 File File::open(const std::string& path, const Limits& limits) {
   initialise();
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    throw Error(Fault::io, path, std::strerror(errno), "check the name and the permissions");
-  }
-  if (!S_ISREG(status.st_mode)) throw Error(Fault::input, path, "is not a regular file");
   auto state = std::make_unique<State>();
   state->path = path;
   state->limits = limits;
-  state->file_bytes = static_cast<std::uint64_t>(status.st_size);
+  state->file_bytes = require_regular_file(path);
   const Handle access = access_properties();
   state->file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!state->file.valid()) {
