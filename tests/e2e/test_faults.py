@@ -82,7 +82,8 @@ class OddFiles(PolarCase):
         name = b"new\nline $(touch told) \xe9.csv"
         os.rename(self.data / "localisations.csv", os.path.join(os.fsencode(self.data), name))
         config = self.run_config("data/new*.csv", more="registration: {starts: [imaged]}\n")
-        self.ok("run", config, "--output", os.fsdecode(b"out \xe9"))
+        done = self.polar("run", config, "--quiet", "--output", os.fsdecode(b"out \xe9"), errors="surrogateescape")
+        self.assertEqual(done.returncode, 0, done.stderr)
         done = json.loads((self.folder / os.fsdecode(b"out \xe9") / "summary.json").read_text())
         self.assertEqual(done["particles"], 3)
         self.assertFalse((self.folder / "told").exists())
