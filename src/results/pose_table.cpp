@@ -46,7 +46,8 @@ class Reader {
                         "give a poses.csv or a result directory");
     next(header);
     const std::vector<std::string> names = results::split_csv(header);
-    for (std::size_t i = 0; i < names.size(); ++i) column_[names[i]] = i;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (!column_.emplace(names[i], i).second) fail("column '" + names[i] + "' occurs twice");
     require("particle");
     for (const char* name : kPoseColumns) require(name);
   }
