@@ -1,10 +1,15 @@
 """Faults from outside: memory that runs out, odd files and names, terminals that are none."""
+import contextlib
 import json
 import os
+import pty
+import random
 import resource
+import signal
+import subprocess
 import unittest
 
-from harness import PolarCase
+from harness import HEADER, POLAR, PolarCase
 
 TINY = "simulation: {particles: 3, blinks_mean: 2, cramer_rao: false}"
 
@@ -91,6 +96,55 @@ class OddFiles(PolarCase):
     def test_a_truth_that_says_something_else(self):
         (self.data / "truth.json").write_text('{"structure": 3}')
         self.fails(3, "truth.json", "evaluate", self.data, "--truth", self.data / "poses.csv")
+
+
+class Surroundings(PolarCase):
+    RUN = ("run", "run.yaml", "--overwrite", "--set", "registration.starts=[imaged]")
+
+    def setUp(self):
+        super().setUp()
+        self.data = self.simulate("simulation: {particles: 8, blinks_mean: 6, cramer_rao: false, orientation: in_plane}")
+        self.run_config()
+
+    def on_a_terminal(self, **environment):
+        """What the program draws on a terminal as its stderr."""
+        ours, theirs = pty.openpty()
+        with subprocess.Popen([POLAR, *self.RUN], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs,
+                              env=environment) as process:
+            os.close(theirs)
+            drawn = b""
+            with contextlib.suppress(OSError):  # what a terminal says when its other end is closed
+                while part := os.read(ours, 4096):
+                    drawn += part
+        os.close(ours)
+        self.assertEqual(process.returncode, 0, drawn)
+        return drawn
+
+    def test_terminals(self):
+        self.assertIn(b"\r", self.on_a_terminal(TERM="xterm"))
+        for environment in ({"TERM": "dumb"}, {}):  # neither a terminal that draws, nor HOME, nor PATH
+            self.assertNotIn(b"\x1b", self.on_a_terminal(**environment))
+
+    def test_a_reader_that_goes_away_ends_the_program(self):
+        for arguments in (("--help",), ("inspect", "data/localisations.csv")):
+            with subprocess.Popen([POLAR, *arguments], cwd=self.folder, stdout=subprocess.PIPE) as process:
+                process.stdout.close()
+            self.assertIn(process.returncode, (0, -signal.SIGPIPE))  # 0: it had said everything
+
+    def test_every_instruction_set_finds_the_same_poses(self):
+        for isa in ("portable", "avx2", "avx512"):  # one the processor lacks stands for the best it has
+            self.ok(*self.RUN, "--quiet", "--output", isa, env={"POLAR_ISA": isa})
+        for isa in ("avx2", "avx512"):
+            report = json.loads(self.ok("evaluate", isa, "--truth", "portable/poses.csv", "--json"))
+            self.assertEqual(report["compared"], 8)
+            self.assertLess(report["median_rotation_deg"], 0.05)  # single precision: 0.002 on six pores
+
+    def test_noise_is_not_registered(self):
+        random_numbers = random.Random(1)
+        rows = "".join(",".join(f"{random_numbers.gauss(0, 30):.3f}" for _ in range(3)) + f",3,3,6,{i % 20}\n"
+                       for i in range(20 * 60))
+        self.write("data/localisations.csv", HEADER + rows)
+        self.fails(5, "no particle could be registered", *self.RUN)
 
 
 if __name__ == "__main__":
