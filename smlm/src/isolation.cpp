@@ -1,4 +1,4 @@
-#include "isolation.hpp"
+#include "smlm/isolation.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>

@@ -1,19 +1,19 @@
 #include "smlm/table_reader.hpp"
 
-#include <sys/stat.h>
 #include <zlib.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "concatenate.hpp"
-#include "isolation.hpp"
 #include "mat_v5.hpp"
 #include "readers/readers.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
 #include "smlm/inspect.hpp"
+#include "smlm/isolation.hpp"
 #include "smlm/pick.hpp"
+#include "smlm/regular_file.hpp"
 
 namespace smlm {
 namespace {
@@ -69,14 +69,7 @@ const std::vector<TableReader>& table_readers() {
 }
 
 FileHead read_head(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    throw Error(Fault::io, path, std::strerror(errno), "check the name and the permissions");
-  }
-  if (!S_ISREG(status.st_mode)) {
-    throw Error(Fault::input, path, "is not a regular file", "give files, not folders or devices");
-  }
-  if (status.st_size == 0)
+  if (require_regular_file(path) == 0)
     throw Error(Fault::input, path, "is empty", "check that it was written completely");
   gzFile file = gzopen(path.c_str(), "rb");
   if (file == nullptr)

@@ -53,7 +53,9 @@ void print(const Comparison& c, const std::string& symmetry, double bound_deg) {
 }
 
 int run(const Arguments& a) {
-  const std::string poses = std::filesystem::is_directory(a.result) ? a.result + "/poses.csv" : a.result;
+  std::error_code unseen;  // whoever opens it says why
+  const std::string poses =
+      std::filesystem::is_directory(a.result, unseen) ? a.result + "/poses.csv" : a.result;
   TruthSummary summary;
   summary.cramer_rao_pair_median_deg = std::nan("");
   const bool simulated = read_truth_summary(a.truth, summary);

@@ -6,6 +6,7 @@
 #include "polar/pipeline/outputs.hpp"
 #include "polar/results/result_file.hpp"
 #include "smlm/error.hpp"
+#include "smlm/isolation.hpp"
 
 namespace polar::cli {
 
@@ -17,13 +18,14 @@ struct Arguments {
 };
 
 int run(const Arguments& a) {
-  const bool is_directory = std::filesystem::is_directory(a.result);
+  std::error_code unseen;  // whoever opens it says why
+  const bool is_directory = std::filesystem::is_directory(a.result, unseen);
   const std::string record = is_directory ? a.result + "/results.h5" : a.result;
   const std::filesystem::path beside = std::filesystem::path(record).parent_path();
   const std::string output = !a.output.empty() ? a.output : beside.empty() ? "." : beside.string();
-  if (!std::filesystem::is_directory(output))
+  if (!std::filesystem::is_directory(output, unseen))
     throw smlm::Error(smlm::Fault::io, output, "no such directory", "create it first");
-  ResultRecord result = read_result_file(record);
+  ResultRecord result = smlm::read_isolated(record, [&] { return read_result_file(record); });
   result.render.voxel_nm = a.voxel_nm;
   for (const std::string& format : a.formats)
     for (const std::string& name : write_format(format, output, result.superparticle, result.render))

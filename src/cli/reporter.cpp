@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "signals.hpp"
@@ -23,7 +25,9 @@ void print_json(nlohmann::json line) {
 ReportStyle choose_style(bool quiet, bool json) {
   if (json) return ReportStyle::json;
   if (quiet) return ReportStyle::quiet;
-  return ::isatty(STDERR_FILENO) ? ReportStyle::terminal : ReportStyle::plain;
+  const char* kind = std::getenv("TERM");  // without one, or a dumb one, no line is drawn over another
+  const bool draws = kind != nullptr && *kind != '\0' && std::strcmp(kind, "dumb") != 0;
+  return draws && ::isatty(STDERR_FILENO) ? ReportStyle::terminal : ReportStyle::plain;
 }
 
 void Reporter::step(const std::string& stage, int done, int total) {

@@ -9,6 +9,7 @@
 #include "polar/pipeline/train_config.hpp"
 #include "reporter.hpp"
 #include "signals.hpp"
+#include "smlm/isolation.hpp"
 
 namespace polar::cli {
 
@@ -23,7 +24,8 @@ struct Arguments {
 
 void print_scores(const TrainOptions& options) {
   if (options.score_shapes.empty()) return;
-  const WeightsFile file = read_weights(options.weights);
+  const WeightsFile file =
+      smlm::read_isolated(options.weights, [&] { return read_weights(options.weights); });
   const auto model = make_pointnet(file.weights);
   const ShapeSet shapes = read_shapes(options.score_shapes, 1024);
   std::printf("Chamfer distance on %llu shapes\n", static_cast<unsigned long long>(shapes.size()));

@@ -70,12 +70,12 @@ Sums sums_of(const BlockedMixture& blocked, std::size_t centres, const FusionDat
                                 view.data(), static_cast<int>(view.size()), blocked.background(), own.data(),
                                 inlier.data(), density.data(), scratch.data());
     double mine = 0;
-    for (std::size_t j = 0; j < view.size(); ++j) {
-      mine += inlier[j];
-      sums.log_likelihood += std::log(static_cast<double>(density[j] + blocked.background()));
-    }
+    for (std::size_t j = 0; j < view.size(); ++j) mine += inlier[j];
+    if (!std::isfinite(mine)) continue;  // one view's numbers shall not spoil the template
     sums.inliers += mine;
     sums.localisations += static_cast<double>(view.size());
+    for (std::size_t j = 0; j < view.size(); ++j)
+      sums.log_likelihood += std::log(static_cast<double>(density[j] + blocked.background()));
     for (std::size_t k = 0; k < centres; ++k) {
       if (own[k] == 0) continue;
       add_turned(own.data(), padded, k, poses[i].rotation, poses[i].translation, 1, sums.total.data(),

@@ -17,16 +17,22 @@ constexpr Eigen::Index kShapes[6][2] = {{kernel::kHidden1, 3},       {kernel::kH
                                         {kLatent, kernel::kHidden2}, {kLatent, kLatent},
                                         {kLatent, kLatent},          {3 * kLatent, kLatent}};
 
-void check(const PointNetWeights& weights) {
+std::string shape(Eigen::Index rows, Eigen::Index columns, Eigen::Index biases) {
+  return std::to_string(rows) + " x " + std::to_string(columns) + " with " + std::to_string(biases) +
+         " biases";
+}
+}  // namespace
+
+void require_network(const PointNetWeights& weights, const std::string& source) {
   for (std::size_t i = 0; i < 6; ++i) {
     const Linear& layer = i < 3 ? weights.encoder[i] : weights.decoder[i - 3];
-    const std::string where = std::string(i < 3 ? "encoder" : "decoder") + " layer " + std::to_string(i % 3);
+    const std::string where = (source.empty() ? "" : source + ": ") + (i < 3 ? "encoder" : "decoder") +
+                              " layer " + std::to_string(i % 3);
     const Eigen::Index out = kShapes[i][0], in = kShapes[i][1];
     if (layer.weight.rows() != out || layer.weight.cols() != in || layer.bias.size() != out)
       throw smlm::Error(smlm::Fault::input, where,
-                        "weight is " + std::to_string(layer.weight.rows()) + " x " +
-                            std::to_string(layer.weight.cols()) + ", expected " + std::to_string(out) +
-                            " x " + std::to_string(in),
+                        "is " + shape(layer.weight.rows(), layer.weight.cols(), layer.bias.size()) +
+                            ", expected " + shape(out, in, out),
                         "use weights written by `polar train`");
     if (!layer.weight.allFinite() || !layer.bias.allFinite())
       throw smlm::Error(smlm::Fault::input, where, "holds a value that is not finite",
@@ -34,6 +40,7 @@ void check(const PointNetWeights& weights) {
   }
 }
 
+namespace {
 class PointNet final : public Autoencoder {
  public:
   explicit PointNet(const PointNetWeights& weights) : weights_(weights), encoder_(weights.encoder) {}
@@ -95,7 +102,7 @@ class PointNet final : public Autoencoder {
 }  // namespace
 
 std::unique_ptr<Autoencoder> make_pointnet(const PointNetWeights& weights) {
-  check(weights);
+  require_network(weights);
   return std::make_unique<PointNet>(weights);
 }
 

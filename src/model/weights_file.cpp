@@ -78,6 +78,7 @@ WeightsFile read_weights(const std::string& path) {
   file.sha256 = hash(file.weights);
   if (file.sha256 != h5.read_string_attribute("/", "sha256"))
     refuse(path, "is damaged: its numbers do not have the hash that it states");
+  require_network(file.weights, path);
   file.about = h5.read_string_attribute("/", "about");
   return file;
 }

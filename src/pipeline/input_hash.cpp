@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "smlm/error.hpp"
+#include "smlm/regular_file.hpp"
 
 namespace polar::pipeline {
 
@@ -26,6 +27,7 @@ InputHash input_hash(const std::vector<std::string>& files, const std::string& c
   std::uint64_t hash = kOffset;
   std::vector<char> block(1 << 20);
   for (const std::string& file : files) {
+    smlm::require_regular_file(file);
     std::ifstream in(file, std::ios::binary);
     if (!in) throw smlm::Error(smlm::Fault::io, file, "cannot be opened", "check its permissions");
     std::uint64_t size = 0;

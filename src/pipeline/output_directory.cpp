@@ -35,15 +35,17 @@ std::vector<std::string> our_files() {
 }
 }  // namespace
 
-OutputDirectory::OutputDirectory(const std::string& path, const RunFlags& flags) : path_(path) {
+OutputDirectory::OutputDirectory(const std::string& path, const RunFlags& flags)
+    : path_(path), lock_path_(file(kLock)) {
   std::error_code ec;
   std::filesystem::create_directories(path, ec);
-  if (!std::filesystem::is_directory(path)) {
-    const bool in_the_way = std::filesystem::exists(path);
-    fail(path, in_the_way ? "is not a directory" : "cannot be created: " + ec.message(),
+  std::error_code unseen;
+  if (!std::filesystem::is_directory(path, unseen)) {
+    const bool in_the_way = std::filesystem::exists(path, unseen);
+    fail(path, in_the_way ? "is not a directory" : "cannot be created: " + (ec ? ec : unseen).message(),
          "choose another output.directory");
   }
-  lock_ = ::open(file(kLock).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  lock_ = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0)
     fail(path, std::string("cannot be written: ") + std::strerror(errno), "choose another output.directory");
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
@@ -58,7 +60,7 @@ OutputDirectory::OutputDirectory(const std::string& path, const RunFlags& flags)
 }
 
 OutputDirectory::~OutputDirectory() {
-  ::unlink(file(kLock).c_str());  // while it is still locked: nobody else can hold this name
+  ::unlink(lock_path_.c_str());  // while it is still locked: nobody else can hold this name
   ::close(lock_);
 }
 

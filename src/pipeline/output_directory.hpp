@@ -28,6 +28,7 @@ class OutputDirectory {
   void remove_leftovers() const;
 
   std::string path_;
+  std::string lock_path_;  // made beforehand: the end of a run for want of memory must not ask for more
   int lock_ = -1;
 };
 

@@ -19,6 +19,7 @@
 #include "polar/registration/prepare.hpp"
 #include "polar/results/result_file.hpp"
 #include "polar/results/results.hpp"
+#include "polar/results/strangers.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/table_reader.hpp"
@@ -135,6 +136,17 @@ std::string resolution_line(const ResolutionReport& r) {
          " in pure noise" + (r.supported() ? "" : ": no structure is resolved");
 }
 
+constexpr std::size_t kStrangersShown = 10;
+
+std::string strangers_line(const std::vector<Stranger>& found) {
+  std::string line = "unlike       ";
+  for (std::size_t i = 0; i < std::min(found.size(), kStrangersShown); ++i)
+    line += (i > 0 ? ", " : "") + found[i].particle + format(" (%+.1f)", found[i].deviation);
+  if (found.size() > kStrangersShown)
+    line += " and " + std::to_string(found.size() - kStrangersShown) + " more";
+  return line + ": robust standard deviations of log_likelihood from the others";
+}
+
 std::vector<std::string> describe(const Results& r, const std::string& directory, double seconds) {
   const Registration& g = r.registration;
   const std::size_t n = r.particles.particles.size();
@@ -154,6 +166,8 @@ std::vector<std::string> describe(const Results& r, const std::string& directory
   };
   lines.push_back("precision    " + format("%.2f deg, ", median(rotation)) +
                   format("%.2f nm", median(translation)) + " (median of the estimated standard deviations)");
+  const std::vector<Stranger> unlike = strangers(pose_rows(r));
+  if (!unlike.empty()) lines.push_back(strangers_line(unlike));
   lines.push_back("start        " + winner(g) + " won of " + std::to_string(g.starts.size()));
   lines.push_back("rounds       " + std::to_string(g.rounds) +
                   (g.converged ? ", converged: " : ", not converged: ") + g.stopped_because);
@@ -190,6 +204,8 @@ nlohmann::json summary_json(const Results& r, const std::vector<std::string>& li
                             {"seconds", seconds},
                             {"files", files},
                             {"text", lines}};
+  for (const Stranger& s : strangers(pose_rows(r)))
+    summary["unlike_the_others"].push_back({{"particle", s.particle}, {"deviation", s.deviation}});
   if (g.symmetry) summary["symmetry"] = pipeline::symmetry_json(*g.symmetry, r.normalisation.scale_nm);
   if (!g.weights_sha256.empty()) summary["weights_sha256"] = g.weights_sha256;
   if (r.resolution)
@@ -264,8 +280,10 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   const std::vector<std::string> written = write(r, config, directory);
   const double seconds = watch.seconds();
   const std::vector<std::string> lines = describe(r, config.output.directory, seconds);
-  smlm::write_file_atomically(directory.file(kSummary),
-                              summary_json(r, lines, written, seconds).dump(2) + "\n");
+  // A name need not be UTF-8, what JSON holds must.
+  const std::string summary =
+      summary_json(r, lines, written, seconds).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  smlm::write_file_atomically(directory.file(kSummary), summary + "\n");
   std::vector<std::string> kept = written;
   kept.emplace_back(kSummary);
   directory.remove_other_results(kept);

@@ -71,10 +71,10 @@ void shift(Simulation& s, const std::array<double, 2>& by_nm) {
 void prepare_directory(const SimulateConfig& config, bool overwrite) {
   std::error_code ec;
   std::filesystem::create_directories(config.directory, ec);
-  if (ec || !std::filesystem::is_directory(config.directory))
+  if (ec || !std::filesystem::is_directory(config.directory, ec))
     throw smlm::Error(smlm::Fault::io, config.directory, "cannot be created as a folder",
                       "choose another output.directory");
-  if (!overwrite && std::filesystem::exists(config.directory + "/poses.csv"))
+  if (!overwrite && std::filesystem::exists(config.directory + "/poses.csv", ec))
     throw smlm::Error(smlm::Fault::io, config.directory, "holds a simulation already",
                       "choose another output.directory or give --overwrite");
 }
@@ -106,7 +106,8 @@ std::vector<std::string> run_simulation(const SimulateConfig& config, bool overw
                               format_pose_table(true_poses(s, config.simulation.cramer_rao)));
   smlm::write_file_atomically(folder + "sites.csv", sites_text(structure));
   smlm::write_file_atomically(folder + "simulation.yaml", portable_text(config));
-  smlm::write_file_atomically(folder + kTruthFile, summary.dump(2) + "\n");
+  smlm::write_file_atomically(folder + kTruthFile,
+                              summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 
   std::vector<std::string> lines = {std::to_string(s.particle.size()) + " particles of " + structure.name +
                                         " (" + truth.symmetry + "), " + std::to_string(s.table.size()) +
@@ -120,12 +121,18 @@ std::vector<std::string> run_simulation(const SimulateConfig& config, bool overw
 
 bool read_truth_summary(const std::string& poses_csv, TruthSummary& summary) {
   const std::string path = (std::filesystem::path(poses_csv).parent_path() / kTruthFile).string();
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return false;
   std::ifstream in(path);
   if (!in) return false;
   const nlohmann::json parsed = nlohmann::json::parse(in, nullptr, false);
-  if (!parsed.is_object()) throw smlm::Error(smlm::Fault::input, path, "is not JSON", "simulate again");
-  summary.structure = parsed.value("structure", "");
-  summary.symmetry = parsed.value("symmetry", "none");
+  const auto text = [&](const char* key) {
+    if (!parsed.is_object() || !parsed.contains(key) || !parsed[key].is_string())
+      throw smlm::Error(smlm::Fault::input, path, std::string("has no text '") + key + "'", "simulate again");
+    return parsed[key].get<std::string>();
+  };
+  summary.structure = text("structure");
+  summary.symmetry = text("symmetry");
   const auto bound = parsed.find("cramer_rao_pair_median_deg");  // null stands for NaN
   summary.cramer_rao_pair_median_deg = bound != parsed.end() && bound->is_number()
                                            ? bound->get<double>()

@@ -131,6 +131,9 @@ void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& sta
     v.reason.clear();
     if (v.n_used < kFewestLocalisations)
       v.reason = too_few_localisations();
+    else if (!v.template_from_view.rotation.allFinite() || !v.template_from_view.translation.allFinite() ||
+             !v.covariance.allFinite() || !std::isfinite(v.log_likelihood))
+      v.reason = "its registration did not end in finite numbers";
     else if (v.outlier_fraction > kMostOutliers)
       v.reason = "the template explains too few of its localisations";
     else if (!(rotation_std < kMostRotationStd))

@@ -4,6 +4,7 @@
 
 #include "polar/model/shipped_weights.hpp"
 #include "polar/model/weights_file.hpp"
+#include "smlm/isolation.hpp"
 #include "template_tools.hpp"
 
 namespace polar {
@@ -21,11 +22,17 @@ Views chosen(const StartContext& context) {
   return few;
 }
 
+WeightsFile weights_of(const RegistrationOptions& options) {
+  const std::string path = weights_path(options.weights);
+  if (options.weights.empty()) return read_weights(path);  // those that ship are no stranger's
+  return smlm::read_isolated(path, [&] { return read_weights(path); });
+}
+
 }  // namespace
 
 LatentModel latent_model(const RegistrationOptions& options) {
   if (!needs_weights(options)) return {};
-  WeightsFile file = read_weights(weights_path(options.weights));
+  WeightsFile file = weights_of(options);
   return {make_pointnet(std::move(file.weights)), std::move(file.sha256)};
 }
 

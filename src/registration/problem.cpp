@@ -14,6 +14,14 @@ namespace polar {
 namespace {
 constexpr std::uint32_t kShuffleStage = 20, kThinningStage = 25;
 constexpr std::size_t kHeldOutShare = 5;  // one localisation in five judges
+
+// One number that is none would spoil every sum over all views.
+bool is_finite(const View& view) {
+  bool finite = view.points.allFinite();
+  for (const Symmetric3& c : view.covariance)
+    finite = finite && std::all_of(c.begin(), c.end(), [](float v) { return std::isfinite(v); });
+  return finite;
+}
 }  // namespace
 
 Problems make_problems(const Views& views, std::uint64_t seed) {
@@ -22,6 +30,8 @@ Problems make_problems(const Views& views, std::uint64_t seed) {
   plain.axes.resize(n), plain.shuffled.resize(n), plain.fitted.resize(n), plain.held_out.resize(n);
   Problem thinned = plain;
   parallel_for(n, [&](std::size_t i) {
+    plain.axes[i] = Eigen::Vector3f::UnitZ();
+    if (!is_finite(views.view[i])) return;  // nothing of it is used, and the others go on
     plain.axes[i] = uncertainty_axis(views.view[i], views.planar);
     const std::vector<double> weight = even_weights(views.view[i].points, kEvennessReach);
     thinned.shuffled[i] = sampling_order(weight, KeyedRandom(seed, i, kThinningStage));

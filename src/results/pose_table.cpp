@@ -3,11 +3,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 
 #include "csv_line.hpp"
 #include "smlm/error.hpp"
+#include "smlm/regular_file.hpp"
 
 namespace polar {
 
@@ -34,14 +36,18 @@ std::string pose_fields(const std::optional<Pose>& pose) {
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), in_(path) {
+  explicit Reader(const std::string& path) : path_(path) {
+    std::error_code unseen;
+    if (std::filesystem::exists(path, unseen)) smlm::require_regular_file(path);
+    in_.open(path);
     std::string header;
     if (!in_)
       throw smlm::Error(smlm::Fault::input, path, "cannot be opened",
                         "give a poses.csv or a result directory");
     next(header);
     const std::vector<std::string> names = results::split_csv(header);
-    for (std::size_t i = 0; i < names.size(); ++i) column_[names[i]] = i;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (!column_.emplace(names[i], i).second) fail("column '" + names[i] + "' occurs twice");
     require("particle");
     for (const char* name : kPoseColumns) require(name);
   }

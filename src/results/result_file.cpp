@@ -231,7 +231,9 @@ void write_result_file(const std::string& path, const Results& results,
 }
 
 ResultRecord read_result_file(const std::string& path) {
-  const File file = File::open(path);
+  smlm::h5::Limits limits;
+  limits.variable_text = false;  // never written here
+  const File file = File::open(path, limits);
   if (!file.has_attribute("/", "format") || file.read_string_attribute("/", "format") != kFormat)
     throw smlm::Error(smlm::Fault::input, path, "not a result of polar run", "give a results.h5");
   if (one_number<std::int32_t>(file, "/", "format_version") > kFormatVersion)

@@ -1,6 +1,7 @@
 #include "polar/simulation/structure_file.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -8,6 +9,7 @@
 
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
+#include "smlm/isolation.hpp"
 
 namespace polar {
 
@@ -103,15 +105,18 @@ Structure read_shapes(const StructureFile& file) {
   if (!h5.exists("/points")) fail(file.path, "has no data set 'points'");
   const auto info = h5.info("/points");
   if (info.shape.size() != 3 || info.shape[2] != 3) fail(file.path + ":points", "expected shape x point x 3");
-  const double scale =
-      h5.has_attribute("/points", "scale") ? h5.read_attribute<double>("/points", "scale").at(0) : 1.0;
+  const auto scales = h5.has_attribute("/points", "scale") ? h5.read_attribute<double>("/points", "scale")
+                                                           : std::vector<double>{1.0};
+  if (scales.size() != 1 || !(scales[0] > 0) || !std::isfinite(scales[0]))
+    fail(file.path + ":points@scale", "expected one positive number");
   const std::size_t row = choose(h5, file, info.shape[0]), size = info.shape[1] * 3;
   const auto all = h5.read<double>("/points");
   std::vector<double> flat(all.begin() + static_cast<std::ptrdiff_t>(row * size),
                            all.begin() + static_cast<std::ptrdiff_t>((row + 1) * size));
-  for (double& v : flat) v *= scale;
+  for (double& v : flat) v *= scales[0];
   Structure s;
-  s.name = h5.exists("/name") ? h5.read_strings("/name").at(row) : std::to_string(row);
+  const auto names = h5.exists("/name") ? h5.read_strings("/name") : std::vector<std::string>{};
+  s.name = row < names.size() ? names[row] : std::to_string(row);
   s.site_nm = as_matrix(flat);
   return s;
 }
@@ -122,7 +127,7 @@ Structure read_structure(const StructureFile& file) {
   if (!std::filesystem::is_regular_file(file.path, ec)) fail(file.path, "no such file");
   Structure s;
   if (smlm::h5::File::is_hdf5(file.path)) {
-    s = read_shapes(file);
+    s = smlm::read_isolated(file.path, [&] { return read_shapes(file); });
   } else {
     const std::filesystem::path path = file.path;
     s.name = path.stem().string();

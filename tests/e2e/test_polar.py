@@ -383,7 +383,7 @@ class Determinism(PolarCase):
         config = self.run_config()
         kept = ("poses.csv", "aligned.csv", "aligned.hdf", "template.hdf", "preview.png")
         first = None
-        for threads, locale in (("1", "C"), ("2", "de_DE.UTF-8"), ("4", "tr_TR.UTF-8")):
+        for threads, locale in (("1", "C"), ("2", "de_DE.UTF-8"), ("7", "tr_TR.UTF-8"), ("64", "C")):
             self.ok("run", config, "--overwrite", "--threads", threads, env={"LC_ALL": locale})
             content = {name: (self.folder / "results" / name).read_bytes() for name in kept}
             first = first or content

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 
 #include "polar/model/autoencoder.hpp"
 
@@ -23,7 +24,11 @@ struct PointNetWeights {
   std::array<Linear, 3> decoder;  // 1024 x 1024, 1024 x 1024, 3072 x 1024 (x, y, z of point 0, 1, ...)
 };
 
-/// Throws smlm::Error (input) naming the layer whose shape is wrong or whose values are not finite.
+/// Throws smlm::Error (input) naming `source`, if any, and the layer whose shape is wrong or whose values are
+/// not finite.
+void require_network(const PointNetWeights& weights, const std::string& source = {});
+
+/// Throws like require_network.
 std::unique_ptr<Autoencoder> make_pointnet(const PointNetWeights& weights);
 
 /// dz_c / d(point critical[c]), 1024 x 3: exact, since the maximum passes its derivative to one point.

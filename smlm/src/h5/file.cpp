@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -13,6 +12,7 @@
 
 #include "handle.hpp"
 #include "smlm/atomic_file.hpp"
+#include "smlm/regular_file.hpp"
 
 namespace smlm::h5 {
 namespace {
@@ -37,6 +37,18 @@ Handle access_properties() {
   return access;
 }
 
+// HDF5 1.10 crashes, or ends the program, where it gets no memory: what a step of writing needs is asked for
+// beforehand, from those who say so.
+void require_memory() {
+  constexpr std::size_t step_bytes = 16 << 20;  // caches, conversion and filters of one data set
+  ::operator delete(::operator new(step_bytes));
+}
+
+herr_t find_no_space(unsigned, const H5E_error2_t* error, void* found) {
+  if (error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC) *static_cast<bool*>(found) = true;
+  return 0;
+}
+
 herr_t collect_name(hid_t, const char* name, const H5L_info_t* info, void* out) {
   auto& entries = *static_cast<std::vector<std::pair<std::string, H5L_type_t>>*>(out);
   entries.emplace_back(name, info->type);
@@ -44,6 +56,12 @@ herr_t collect_name(hid_t, const char* name, const H5L_info_t* info, void* out) 
 }
 
 }  // namespace
+
+bool out_of_memory() {
+  bool found = false;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find_no_space, &found);
+  return found;
+}
 
 void initialise() {
   // First of all calls, or it has no effect: a file whose last bytes could not be written stays half closed,
@@ -55,15 +73,18 @@ void initialise() {
 
 // A new file at `path`; messages call it `shown`.
 static std::unique_ptr<File::State> created(const std::string& path, const std::string& shown) {
+  require_memory();
   initialise();
   auto state = std::make_unique<File::State>();
   state->path = shown;
   state->writable = true;
   const Handle access = access_properties();
   state->file = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
-  if (!state->file.valid())
+  if (!state->file.valid()) {
+    if (out_of_memory()) throw std::bad_alloc();
     throw Error(Fault::io, shown, "cannot be created",
                 "check the folder, its permissions and the disk's space");
+  }
   return state;
 }
 
@@ -92,15 +113,10 @@ bool File::is_hdf5(const std::string& path) {
 
 File File::open(const std::string& path, const Limits& limits) {
   initialise();
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    throw Error(Fault::io, path, std::strerror(errno), "check the name and the permissions");
-  }
-  if (!S_ISREG(status.st_mode)) throw Error(Fault::input, path, "is not a regular file");
   auto state = std::make_unique<State>();
   state->path = path;
   state->limits = limits;
-  state->file_bytes = static_cast<std::uint64_t>(status.st_size);
+  state->file_bytes = require_regular_file(path);
   const Handle access = access_properties();
   state->file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!state->file.valid()) {
@@ -134,6 +150,7 @@ void File::close() {
 }
 
 bool File::State::resolves(const std::string& object) const {
+  if (writable) require_memory();  // every step of writing begins here
   if (object.empty() || object.front() != '/') fail_input(object, "is not an absolute path in the file");
   if (object == "/") return true;
   for (auto slash = object.find('/', 1);; slash = object.find('/', slash + 1)) {

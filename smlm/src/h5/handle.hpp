@@ -3,6 +3,7 @@
 
 #include <hdf5.h>
 
+#include <new>
 #include <string>
 #include <utility>
 
@@ -35,6 +36,9 @@ class Handle {
   Close close_ = nullptr;
 };
 
+/// Whether the call that has just failed did so because it got no memory.
+bool out_of_memory();
+
 struct File::State {
   std::string path;
   Limits limits;
@@ -44,9 +48,11 @@ struct File::State {
 
   [[noreturn]] void fail_input(const std::string& object, const std::string& what,
                                const std::string& remedy = {}) const {
+    if (writable) fail_io(object, what);  // what we are writing cannot be somebody's damaged file
     throw Error(Fault::input, path + ":" + object, what, remedy);
   }
   [[noreturn]] void fail_io(const std::string& object, const std::string& what) const {
+    if (out_of_memory()) throw std::bad_alloc();
     throw Error(Fault::io, path + ":" + object, what, "check that the disk has space and answers");
   }
 

@@ -156,6 +156,8 @@ std::vector<std::string> File::read_strings(const std::string& dataset) const {
   const DatasetInfo described = state_->info(dataset);
   if (described.kind != Kind::text) state_->fail_input(dataset, "does not hold text");
   const Handle type(H5Dget_type(object.get()), H5Tclose);
+  if (!state_->limits.variable_text && H5Tis_variable_str(type.get()) != 0)
+    state_->fail_input(dataset, "holds text of variable length, which is not read here");
   state_->check_bytes(dataset, described.elements(), H5Tget_size(type.get()));
   return read_text(type.get(), described.elements(), [&](hid_t memory, void* out) {
     if (H5Dread(object.get(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0) {

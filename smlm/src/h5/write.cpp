@@ -31,9 +31,10 @@ Handle simple_space(const Shape& shape) {
              : Handle(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), H5Sclose);
 }
 
-Handle variable_text_type() {
+Handle text_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_size(type.get(), bytes);
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   return type;
 }
@@ -82,16 +83,17 @@ void File::write_from(const std::string& dataset, Scalar scalar, const void* dat
 }
 
 void File::write_strings(const std::string& dataset, const std::vector<std::string>& values) {
-  const Handle type = variable_text_type();
+  std::size_t longest = 1;
+  for (const std::string& value : values) longest = std::max(longest, value.size());
+  std::string padded;
+  for (const std::string& value : values) padded.append(value).append(longest - value.size(), '\0');
+  const Handle type = text_type(longest);
   const Handle space = simple_space({values.size()});
   const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties.get(), 0);
   const Handle object = state_->create_dataset(dataset, type.get(), space.get(), properties.get());
-  std::vector<const char*> pointers;
-  pointers.reserve(values.size());
-  for (const std::string& value : values) pointers.push_back(value.c_str());
   if (!values.empty() &&
-      H5Dwrite(object.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) < 0) {
+      H5Dwrite(object.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()) < 0) {
     state_->fail_io(dataset, "its text cannot be written");
   }
 }

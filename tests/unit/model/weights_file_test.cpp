@@ -97,6 +97,21 @@ TEST_F(WeightsFileTest, refusesDamageAndOtherFiles) {
   EXPECT_NE(refusal(), "");
 }
 
+TEST_F(WeightsFileTest, refusesAnotherNetworkAndNumbersThatAreNone) {
+  PointNetWeights weights = some_weights();
+  weights.decoder[2].bias.conservativeResize(7);
+  write_weights(path_, weights, Precision::single, "");
+  EXPECT_NE(refusal().find(path_ +
+                           ": decoder layer 2: is 3072 x 1024 with 7 biases, expected 3072 x 1024 with 3072"),
+            std::string::npos)
+      << refusal();
+  weights = some_weights();
+  weights.encoder[1].weight(3, 3) = std::numeric_limits<float>::quiet_NaN();
+  write_weights(path_, weights, Precision::single, "");
+  EXPECT_NE(refusal().find(path_ + ": encoder layer 1: holds a value that is not finite"), std::string::npos)
+      << refusal();
+}
+
 TEST(Sha256, agreesWithTheStandardsExamples) {
   const auto of = [](const std::string& text) { return sha256(text.data(), text.size()); };
   EXPECT_EQ(of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");

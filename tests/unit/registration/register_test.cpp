@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -86,6 +87,23 @@ TEST(RegisterViews, givesTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(one.view[i].template_from_view.translation, two.view[i].template_from_view.translation) << i;
     EXPECT_EQ(one.view[i].log_likelihood, two.view[i].log_likelihood) << i;
   }
+}
+
+TEST(RegisterViews, aViewWithANumberThatIsNoneIsMarkedAndTheOthersGoOn) {
+  SimulationOptions o = small(6);
+  o.particles = 12;
+  Simulated s = simulated(o);
+  s.views.view[4].points(1, 3) = std::numeric_limits<float>::quiet_NaN();
+  s.views.view[7].covariance[2][0] = std::numeric_limits<float>::infinity();
+  RegistrationOptions options;
+  options.starts = {"imaged"};
+  Progress silent;
+  const Registration r = register_views(s.views, options, silent);
+  for (std::size_t i = 0; i < r.view.size(); ++i) {
+    EXPECT_EQ(r.view[i].accepted, i != 4 && i != 7) << i << ": " << r.view[i].reason;
+    EXPECT_TRUE(r.view[i].template_from_view.rotation.allFinite()) << i;
+  }
+  EXPECT_TRUE(r.fused.centre.allFinite());
 }
 
 // Keeps states in memory and, as the progress of the same run, asks to stop once `most` were kept.

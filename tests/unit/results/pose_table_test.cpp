@@ -75,6 +75,7 @@ TEST_F(PoseTable, FaultsNameFileAndLine) {
   expect_fault(header + "a,1,0,0,0,,0,0\n", "incomplete pose");
   expect_fault(header + "a,2,0,0,0,0,0,0\n", "length 1");
   expect_fault("", "missing");
+  expect_fault("particle,qw,qx,qy,qz,tx_nm,ty_nm,qw,tz_nm\na,1,0,0,0,0,0,0,0\n", "'qw' occurs twice");
   EXPECT_EQ(read_pose_table(write(header + "a,1,0,0,0,0,0,0\r\n")).size(), 1u);
 }
 

@@ -79,6 +79,23 @@ TEST_F(StructureFiles, ShapesByNameLabelAndIndex) {
   expect_fault(file, "it holds 3 shapes");
 }
 
+TEST_F(StructureFiles, ShapesWithNamesOrScalesAmissAreToldFromWholeOnes) {
+  StructureFile file;
+  file.path = directory_.path("shapes.h5");
+  const auto write_shapes = [&](double scale) {
+    auto h5 = smlm::h5::File::create(file.path);
+    h5.write("/points", std::vector<double>{0, 0, 0, 1, 1, 1, 0, 0, 0, 2, 2, 2}, {2, 2, 3});
+    h5.write_attribute("/points", "scale", scale);
+    h5.write_strings("/name", {"only one"});
+    h5.close();
+  };
+  write_shapes(1);
+  file.index = 1;
+  EXPECT_EQ(read_structure(file).name, "1");
+  write_shapes(-1);
+  expect_fault(file, "shapes.h5:points@scale: expected one positive number");
+}
+
 TEST_F(StructureFiles, FaultsNameTheFile) {
   expect_fault(write("empty.csv", ""), "holds no points");
   expect_fault(write("two.csv", "1,2,3\n1,2\n"), "two.csv:2");

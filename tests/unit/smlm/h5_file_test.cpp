@@ -125,6 +125,23 @@ TEST_F(H5FileTest, StringsRoundTrip) {
   EXPECT_THAT(File::open(path("s.h5")).read_strings("/names"), ElementsAre("a", "", "\xCF\x83x"));
 }
 
+TEST_F(H5FileTest, StringsOfVariableLengthAreReadUnlessTheCallerWritesNone) {
+  const hid_t raw = H5Fcreate(path("v.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, H5T_VARIABLE);
+  const hsize_t two = 2;
+  const hid_t space = H5Screate_simple(1, &two, nullptr);
+  const hid_t data = H5Dcreate2(raw, "names", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const char* const values[] = {"short", "not so short"};
+  H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+  H5Dclose(data), H5Sclose(space), H5Tclose(type), H5Fclose(raw);
+  EXPECT_THAT(File::open(path("v.h5")).read_strings("/names"), ElementsAre("short", "not so short"));
+  Limits fixed_only;
+  fixed_only.variable_text = false;
+  EXPECT_THAT(test::error_of([&] { File::open(path("v.h5"), fixed_only).read_strings("/names"); }).what(),
+              HasSubstr("v.h5:/names: holds text of variable length"));
+}
+
 TEST_F(H5FileTest, LinksToOtherFilesAreNeverFollowed) {
   {
     File other = File::create(path("other.h5"));

@@ -1,4 +1,4 @@
-#include "isolation.hpp"
+#include "smlm/isolation.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -72,6 +72,8 @@ struct Limits {
   std::uint64_t max_array_bytes = std::uint64_t{32} << 30;
   std::uint64_t max_chunk_bytes = std::uint64_t{1} << 30;
   std::uint64_t max_objects_per_group = 1'000'000;
+  /// Whether strings of variable length are read: HDF5 1.10 follows their lengths and places unchecked.
+  bool variable_text = true;
 };
 
 /// How an array is stored: gzip 0 is contiguous (what Picasso and ParaView read best), 1-9 chunked.
@@ -160,7 +162,7 @@ class File {
     write_from(dataset, scalar_of<T>(), values.data(), shape.empty() ? Shape{values.size()} : shape,
                values.size(), storage);
   }
-  /// One-dimensional, variable-length UTF-8.
+  /// One-dimensional UTF-8, all of the longest one's length, null padded.
   void write_strings(const std::string& dataset, const std::vector<std::string>& values);
   /// A one-dimensional compound data set, one field a column, contiguous (Picasso's /locs). Columns must
   /// have the same number of rows.

@@ -24,4 +24,12 @@ ReadingLimits reading_limits(const std::string& path);
 void require_survival(const std::string& path, const std::function<void()>& attempt,
                       const ReadingLimits& limits);
 
+/// read() in another process first, then here.
+template <class Read>
+auto read_isolated(const std::string& path, const Read& read) {
+  require_survival(
+      path, [&] { read(); }, reading_limits(path));
+  return read();
+}
+
 }  // namespace smlm
