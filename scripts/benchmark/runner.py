@@ -82,7 +82,8 @@ def run(study, level, program, a):
                 key = json.dumps([record["version"], settings, {**study.run, **point.run}], sort_keys=True)
                 folder = a.work / study.name / hashlib.sha256(key.encode()).hexdigest()[:16]
                 if study.kind == "peers":
-                    rows = peers.measure(study, point, settings, program, folder, a, kept)
+                    rows = peers.measure(study, point, settings, program, folder, a, kept,
+                                         point.peers.get(level, peers.PEERS))
                 else:
                     rows = [kept(folder, key, lambda: measure(study, point, settings, program, folder))]
                 for row in rows:

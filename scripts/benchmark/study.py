@@ -17,6 +17,7 @@ class Point:
     run: dict = field(default_factory=dict)
     levels: tuple = LEVELS
     series: str = ""  # points of one name are joined in the figure
+    peers: dict = field(default_factory=dict)  # level -> the other programs that run; a level that is not named: all
 
 
 @dataclass
@@ -50,7 +51,7 @@ def load(path: Path, common):
         raise SystemExit(f"{path}: kind is {entry['kind']!r}, expected one of {KINDS}")
     points = []
     for p in entry["points"]:
-        known_keys(p, ("label", "simulate", "run", "levels", "series"), path)
+        known_keys(p, ("label", "simulate", "run", "levels", "series", "peers"), path)
         points.append(Point(**p))
     objects = entry.get("objects", common["objects"])
     return Study(name=path.stem, title=entry["title"], paper=entry["paper"], text=entry["text"].strip(),

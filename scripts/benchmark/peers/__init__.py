@@ -28,9 +28,10 @@ class Missing(Exception):
     """A program is not installed."""
 
 
-def measure(study, point, settings, program, folder: Path, a, kept):
-    """One row a program. `kept` holds the row of each in a folder of its own, so that a study cut short goes on; rows of
-    other programs are kept by the table that they read, whichever version of this program wrote it."""
+def measure(study, point, settings, program, folder: Path, a, kept, wanted):
+    """One row a program, of others those that are wanted. `kept` holds the row of each in a folder of its own, so that a
+    study cut short goes on; rows of other programs are kept by the table that they read, whichever version of this
+    program wrote it."""
     data = folder / "data"
     kept(folder / "simulated", "", lambda: program.simulate(settings, data) or [])
     table = hashlib.sha256((data / "localisations.csv").read_bytes()).hexdigest()[:16]
@@ -39,7 +40,8 @@ def measure(study, point, settings, program, folder: Path, a, kept):
         run = {**study.run, **point.run, **keys}
         result = folder / "-".join(w.strip(",'") for w in name.split())
         rows.append({"method": name, **kept(result, str(run), lambda: own(program, data, run, result / "result"))})
-    for name, (module, options, limit_cpu_s) in PEERS.items():
+    for name in wanted:
+        module, options, limit_cpu_s = PEERS[name]
         result = folder.parent / f"views_{table}" / f"{module}_{options[1]}"
         work = lambda: peer(program, a.peers_python, module, options, limit_cpu_s, data, result / "poses.csv")  # noqa: E731
         try:
