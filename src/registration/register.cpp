@@ -18,6 +18,8 @@ namespace polar {
 
 namespace {
 
+constexpr double kFewLocalisations = 12000;  // of all views: less, and the last search is done again
+constexpr int kMostLastSearches = 3;
 constexpr double kLargestFactor = 1.5;  // of a, either way, before a warning
 
 class Stopwatch {
@@ -95,8 +97,13 @@ bool fuse(Run& run, const RegistrationOptions& options, FusedState& fused) {
     noise = choose_centres(problem, noise, state);
     run.timed("symmetry");
   }
-  search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
-  noise = calibrate_and_fuse(problem, 1, noise, state);
+  // A few localisations fit noise at first, and each view that is set right sharpens the template.
+  const int searches = std::clamp(static_cast<int>(kFewLocalisations / std::max(1.0, problem.localisations)),
+                                  1, kMostLastSearches);
+  for (int k = 0; k < searches && (k == 0 || state.escaped > 0); ++k, ++state.rounds) {
+    search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
+    noise = calibrate_and_fuse(problem, 1, noise, state);
+  }
   if (state.sites) noise = choose_centres(problem, noise, state);
   run.timed("last search");
   return true;

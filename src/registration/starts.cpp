@@ -17,7 +17,7 @@ constexpr double kLookUpBudget =
     3.0e9;                      // over all random starts: seconds on two cores, whatever the size of the set
 constexpr int kLongStarts = 6;  // that the budget must allow
 constexpr double kLongest = 2.0;  // times the usual
-constexpr int kMostFinalists = 5;
+constexpr int kMostFinalists = 12;
 constexpr double kFinalistLocalisations =
     130000;  // views x localisations that the finalists may cost together
 
@@ -41,8 +41,9 @@ AnnealingOptions annealing(const StartContext& context) {
   return options;
 }
 
-int random_starts(const StartContext& context, const AnnealingOptions& options) {
-  const double look_ups = localisations(context) * options.rotations * 7.0 * options.sweeps;
+int random_starts(const StartContext& context) {
+  const AnnealingOptions usual;
+  const double look_ups = localisations(context) * usual.rotations * 7.0 * usual.sweeps;
   return std::clamp(static_cast<int>(kLookUpBudget / std::max(1.0, look_ups)), kFewestRandom, kMostRandom);
 }
 
@@ -50,7 +51,7 @@ std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartConte
                                    const Autoencoder* model, const RegistrationOptions& wishes,
                                    Progress& progress, Checkpoint& checkpoint) {
   const AnnealingOptions options = annealing(plain);
-  const int random = wants(wishes, "random") ? random_starts(plain, options) : 0;
+  const int random = wants(wishes, "random") ? random_starts(plain) : 0;
   const bool polar = wants(wishes, "polar");
   const int total = random + (polar ? 1 : 0) + (wants(wishes, "imaged") ? 1 : 0);
   std::vector<Hypothesis> hypotheses;
