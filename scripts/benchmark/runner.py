@@ -83,7 +83,7 @@ def run(study, level, program, a):
                 folder = a.work / study.name / hashlib.sha256(key.encode()).hexdigest()[:16]
                 if study.kind == "peers":
                     rows = peers.measure(study, point, settings, program, folder, a, kept,
-                                         point.peers.get(level, peers.PEERS))
+                                         point.peers.get(level, peers.ALL))
                 else:
                     rows = [kept(folder, key, lambda: measure(study, point, settings, program, folder))]
                 for row in rows:

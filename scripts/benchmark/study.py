@@ -17,7 +17,7 @@ class Point:
     run: dict = field(default_factory=dict)
     levels: tuple = LEVELS
     series: str = ""  # points of one name are joined in the figure
-    peers: dict = field(default_factory=dict)  # level -> the other programs that run; a level that is not named: all
+    peers: dict = field(default_factory=dict)  # level -> the programs that run, of kind peers; a level that is not named: all
 
 
 @dataclass

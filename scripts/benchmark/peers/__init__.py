@@ -7,7 +7,6 @@ from ..program import NothingRegistered, process
 
 # name in the table -> keys of this program
 OWN = {"polar": {},
-       "polar, likelihood, exhaustive": {"registration.search": "exhaustive"},
        "polar, latent": {"registration.method": "latent"},
        "polar, the paper's variant": {"registration.method": "latent", "registration.optimizer": "adamw",
                                       "registration.search": "exhaustive"},
@@ -19,7 +18,8 @@ PEERS = {"Open3D FGR": ("open3d_pairs", ["--method", "fgr"], 900),
          "Open3D RANSAC": ("open3d_pairs", ["--method", "ransac"], 900),
          "probreg CPD": ("probreg_pairs", ["--method", "cpd"], 900),
          "probreg FilterReg": ("probreg_pairs", ["--method", "filterreg"], 900),
-         "the authors' POLAR, 2000 rotations": ("authors_polar", ["--rotations", "2000", "--neighbours", "32"], 1800)}
+         "the authors' POLAR, 2000 rotations": ("authors_polar", ["--rotations", "2000", "--neighbours", "32"], 1200)}
+ALL = (*OWN, *PEERS)
 NOT_INSTALLED = 77  # exit code of a module whose program is missing
 NICENESS = 10       # they take long
 
@@ -29,18 +29,21 @@ class Missing(Exception):
 
 
 def measure(study, point, settings, program, folder: Path, a, kept, wanted):
-    """One row a program, of others those that are wanted. `kept` holds the row of each in a folder of its own, so that a
+    """One row a program that is wanted. `kept` holds the row of each in a folder of its own, so that a
     study cut short goes on; rows of other programs are kept by the table that they read, whichever version of this
     program wrote it."""
+    if set(wanted) - set(ALL):
+        raise SystemExit(f"{study.name}: no programs {sorted(set(wanted) - set(ALL))}, known are {sorted(ALL)}")
     data = folder / "data"
     kept(folder / "simulated", "", lambda: program.simulate(settings, data) or [])
     table = hashlib.sha256((data / "localisations.csv").read_bytes()).hexdigest()[:16]
     rows = []
-    for name, keys in OWN.items():
+    for name in (n for n in OWN if n in wanted):
+        keys = OWN[name]
         run = {**study.run, **point.run, **keys}
         result = folder / "-".join(w.strip(",'") for w in name.split())
         rows.append({"method": name, **kept(result, str(run), lambda: own(program, data, run, result / "result"))})
-    for name in wanted:
+    for name in (n for n in PEERS if n in wanted):
         module, options, limit_cpu_s = PEERS[name]
         result = folder.parent / f"views_{table}" / f"{module}_{options[1]}"
         work = lambda: peer(program, a.peers_python, module, options, limit_cpu_s, data, result / "poses.csv")  # noqa: E731
