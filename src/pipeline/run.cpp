@@ -132,8 +132,10 @@ std::string period(const HalfMaps& h) {
 }
 
 std::string resolution_line(const ResolutionReport& r) {
-  return "resolution   " + period(r.data) + " between independent halves, " + period(r.noise) +
-         " in pure noise" + (r.supported() ? "" : ": no structure is resolved");
+  const bool compared = r.noise.first_particles > 0 && r.noise.second_particles > 0;
+  return "resolution   " + period(r.data) + " between independent halves, " +
+         (compared ? period(r.noise) + " in pure noise" : "no particle of pure noise has a pose") +
+         (r.supported() ? "" : ": no structure is resolved");
 }
 
 constexpr std::size_t kStrangersShown = 10;
