@@ -29,7 +29,7 @@ class Growth {
         options_(options),
         progress_(progress),
         views_(latent_views(views, model, searching(options))),
-        multistart_(model, options, views.planar, views.view.size()) {}
+        multistart_(model, options, views.planar, views.view.size(), progress) {}
 
   LatentRegistration run() {
     LatentRegistration out;
@@ -45,6 +45,7 @@ class Growth {
     out.stopped_because = "the number of loops is limited to " + std::to_string(options_.most_loops);
     while (out.loops < options_.most_loops && !progress_.cancelled()) {
       out.escaped = multistart_.improve(views_, points_, out.loops, true, forgotten());
+      if (progress_.cancelled()) break;
       tighten(kTrusted);
       progress_.step("latent", ++out.loops, options_.most_loops);
       if (out.escaped <= kSettled * static_cast<double>(views_.view.size())) {

@@ -23,7 +23,7 @@ class Algorithm1 {
         options_(options),
         progress_(progress),
         views_(latent_views(views, model, options)),
-        multistart_(model, options_, views.planar, views.view.size()) {}
+        multistart_(model, options_, views.planar, views.view.size(), progress) {}
 
   LatentRegistration run() {
     LatentRegistration out;
@@ -39,6 +39,7 @@ class Algorithm1 {
       descend_jointly(model_, views_, options_, joint_steps(), progress_, state);
       if (out.loops == 0) adapt(state);
       out.escaped = multistart_.improve(views_, decoded(state), out.loops + 1, false, state);
+      if (progress_.cancelled()) break;
       progress_.step("latent", ++out.loops, options_.most_loops);
       if (out.escaped == 0) {  // paper: until sum_i s(.) = 0
         out.converged = true;

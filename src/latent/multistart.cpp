@@ -21,9 +21,11 @@ bool less(const DescendedPose& a, const DescendedPose& b) { return a.loss < b.lo
 
 }  // namespace
 
-Multistart::Multistart(const Autoencoder& model, const LatentOptions& options, bool planar, std::size_t views)
+Multistart::Multistart(const Autoencoder& model, const LatentOptions& options, bool planar, std::size_t views,
+                       const Progress& progress)
     : model_(model),
       options_(options),
+      progress_(progress),
       planar_(planar),
       grid_(latent_grid(options, planar)),
       second_(views, DescendedPose{Pose(), -1, 0}) {}
@@ -57,7 +59,7 @@ int Multistart::improve(const LatentViews& views, const Eigen::Matrix3Xf& points
   const auto candidates = minima(views, points, state, round, options_.basins);
   std::vector<char> escaped(views.view.size(), 0);
   parallel_for(views.view.size(), [&](std::size_t i) {
-    if (views.view[i].empty()) return;
+    if (views.view[i].empty() || progress_.cancelled()) return;
     std::vector<Pose> starts;
     for (const Minimum& m : candidates[i]) starts.push_back(m.view_from_template);
     if (present_too) starts.push_back(state.view_from_template[i]);

@@ -5,12 +5,15 @@
 
 #include "descent.hpp"
 #include "flames_search.hpp"
+#include "polar/core/progress.hpp"
 
 namespace polar {
 
 class Multistart {
  public:
-  Multistart(const Autoencoder& model, const LatentOptions& options, bool planar, std::size_t views);
+  /// Where `progress` is cancelled, improve() leaves the views that are left as they are.
+  Multistart(const Autoencoder& model, const LatentOptions& options, bool planar, std::size_t views,
+             const Progress& progress);
 
   /// The `most` best minima of every view over the grid, turned at random for each `round`.
   std::vector<std::vector<Minimum>> minima(const LatentViews& views, const Eigen::Matrix3Xf& points,
@@ -31,6 +34,7 @@ class Multistart {
 
   const Autoencoder& model_;
   const LatentOptions& options_;
+  const Progress& progress_;
   bool planar_;
   SearchGrid grid_;
   std::vector<DescendedPose> second_;
