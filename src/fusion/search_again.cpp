@@ -105,7 +105,7 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
   SearchAgainReport report;
   for (std::size_t i = 0; i < outcome.size(); ++i) {
     poses[i] = outcome[i].pose;
-    report.escaped += outcome[i].escaped ? 1 : 0;
+    if (outcome[i].escaped) report.escaped.push_back(i);
     report.margin.push_back(outcome[i].margin);
   }
   return report;

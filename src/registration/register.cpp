@@ -130,9 +130,12 @@ Registration from_state(Run& run, const RegistrationOptions& options, RoundState
   run.timed("polish");
   Registration& out = run.out;
   out.rounds = state.rounds;
-  out.converged = state.escaped <= run.rounds.settled * static_cast<double>(problem.size());
+  out.converged = state.escaped - state.twins <= run.rounds.settled * static_cast<double>(problem.size());
   out.stopped_because = std::to_string(state.escaped) + " of " + std::to_string(problem.size()) +
                         " views moved by more than 15 degrees in the last search";
+  if (state.twins > 0)
+    out.stopped_because +=
+        ", " + std::to_string(state.twins) + " of them to where the template looks the same";
   warn_about_calibration(out.calibration, out.warnings);
   if (out.symmetry) {
     count_units(problem, out);

@@ -6,6 +6,7 @@
 #include "polar/core/rng.hpp"
 #include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/search_again.hpp"
+#include "self_similarity.hpp"
 #include "states.hpp"
 #include "template_tools.hpp"
 
@@ -68,10 +69,12 @@ void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptio
   }
   const Eigen::Matrix3f turn = grid_turn(
       problem.planar(), KeyedRandom(problem.seed, static_cast<std::uint64_t>(state.rounds), kTurnStage));
+  const std::vector<Pose> before = state.pose;
   const SearchAgainReport report =
       search_again(problem.views, problem.axes, subset, state.mixture, noise, grid, turn, search, state.pose);
   state.margin = report.margin;
-  state.escaped = report.escaped;
+  state.escaped = static_cast<int>(report.escaped.size());
+  state.twins = twins(state.mixture, problem.planar(), before, state.pose, report.escaped);
 }
 
 bool run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,

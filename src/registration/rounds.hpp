@@ -42,6 +42,7 @@ struct RoundState {
   double held_out = -1e300;  // mean log density of the held-out localisations at that width
   int rounds = 0;
   int escaped = 0;     // in the last search
+  int twins = 0;       // of these, to where the template looks the same (self_similarity.hpp)
   bool parts = false;  // views show parts of the structure: the first search shifts them far
 };
 

@@ -1,9 +1,11 @@
 #include "self_similarity.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "polar/core/constants.hpp"
+#include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 #include "polar/fusion/fusion_data.hpp"
@@ -16,6 +18,7 @@ constexpr double kWidth = 0.06;  // particle radii; wider than centres err, narr
 constexpr Eigen::Index kMostPoints = 256;
 constexpr int kTurnsAtRandom = 128;
 constexpr std::uint32_t kTurnStage = 41;
+constexpr double kTheSame = 0.7;  // similarity; a template that is symmetric but for noise has 0.8 to 1
 const std::vector<Eigen::Vector3f> kAnyAxis = {Eigen::Vector3f::UnitZ()};  // the width is isotropic
 
 NoiseModel noise(bool planar) {
@@ -93,6 +96,18 @@ double SelfSimilarity::log_density(const std::vector<Pose>& motion) const {
   const FusionData data(views_, kAnyAxis, noise(planar()), {}, std::vector<int>(motion.size(), 0));
   const std::vector<double> mean = mean_log_likelihood(mixture_, data, motion);
   return std::accumulate(mean.begin(), mean.end(), 0.0) / static_cast<double>(mean.size());
+}
+
+int twins(const Mixture& mixture, bool planar, const std::vector<Pose>& before,
+          const std::vector<Pose>& after, const std::vector<std::size_t>& moved) {
+  if (moved.empty()) return 0;
+  const SelfSimilarity of_template(mixture, planar);
+  std::vector<char> same(moved.size(), 0);
+  parallel_for(moved.size(), [&](std::size_t k) {
+    const Pose motion = after[moved[k]] * before[moved[k]].inverse();
+    same[k] = of_template.exact({motion}) >= kTheSame ? 1 : 0;
+  });
+  return static_cast<int>(std::count(same.begin(), same.end(), 1));
 }
 
 }  // namespace polar

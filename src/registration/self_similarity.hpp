@@ -42,4 +42,9 @@ class SelfSimilarity {
   double coarse_own_ = 0, coarse_any_ = 0, exact_own_ = 0, exact_any_ = 0;
 };
 
+/// How many of `moved` went to where the template looks the same: a turn of a symmetric structure, or of one
+/// that is nearly so. Poses are template_from_view, of all views.
+int twins(const Mixture& mixture, bool planar, const std::vector<Pose>& before,
+          const std::vector<Pose>& after, const std::vector<std::size_t>& moved);
+
 }  // namespace polar

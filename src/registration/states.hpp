@@ -47,9 +47,10 @@ void fields(Archive& archive, Hypothesis& value) {
 }
 template <class Archive>
 void fields(Archive& archive, RoundState& value) {
-  auto& [mixture, pose, margin, crowded, occupancy, group, sites, width, held_out, rounds, escaped, parts] =
-      value;
-  archive(mixture, pose, margin, crowded, occupancy, group, sites, width, held_out, rounds, escaped, parts);
+  auto& [mixture, pose, margin, crowded, occupancy, group, sites, width, held_out, rounds, escaped, twins,
+         parts] = value;
+  archive(mixture, pose, margin, crowded, occupancy, group, sites, width, held_out, rounds, escaped, twins,
+          parts);
 }
 template <class Archive>
 void fields(Archive& archive, RoundsUnderWay& value) {

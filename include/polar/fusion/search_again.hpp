@@ -27,7 +27,7 @@ struct SearchAgainOptions {
 };
 
 struct SearchAgainReport {
-  int escaped = 0;             // views that moved farther than T_R to a better likelihood
+  std::vector<std::size_t> escaped;  // views that moved farther than T_R to a better likelihood
   std::vector<double> margin;  // per view: best minus second-best basin, mean log density per localisation
 };
 

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 #include "polar/core/symmetry_group.hpp"
 #include "polar/registration/register.hpp"
+#include "registration/self_similarity.hpp"
 #include "registration/symmetry_frame.hpp"
 #include "registration/symmetry_stage.hpp"
 #include "smlm/error.hpp"
@@ -71,6 +73,24 @@ struct Registered {
     sort_into_blocks(state.mixture);
   }
 };
+
+TEST(Twins, areTheViewsThatMovedToWhereTheTemplateLooksTheSame) {
+  const Registered r(structure("C4", 5, 3), {so3_exp({0.4, -0.2, 0.3}), {0.1, 0.2, 0}}, 3);
+  const Eigen::Vector3d middle(0.1, 0.2, 0);
+  const auto turned = [&](const Pose& pose, double angle) {
+    const Eigen::Matrix3d frame = so3_exp({0.4, -0.2, 0.3});
+    const Eigen::Matrix3d turn = frame * so3_exp({0, 0, angle}) * frame.transpose();
+    return Pose{turn, middle - turn * middle} * pose;
+  };
+  std::vector<Pose> after = r.state.pose;
+  after[0] = turned(after[0], kPi / 2);
+  after[1] = turned(after[1], kPi);
+  after[2] = turned(after[2], kPi / 4);
+  after[3].translation.x() += 0.5;
+  EXPECT_EQ(twins(r.state.mixture, false, r.state.pose, after, {0, 1, 2, 3}), 2);
+  EXPECT_EQ(twins(r.state.mixture, false, r.state.pose, after, {2}), 0);
+  EXPECT_EQ(twins(r.state.mixture, false, r.state.pose, after, {}), 0);
+}
 
 Symmetry detected(const Eigen::Matrix3Xd& sites, const Pose& frame, bool planar = false) {
   const Registered r(sites, frame, 11, planar);
