@@ -17,7 +17,7 @@ constexpr double kLookUpBudget =
     3.0e9;                      // over all random starts: seconds on two cores, whatever the size of the set
 constexpr int kLongStarts = 6;  // that the budget must allow
 constexpr double kLongest = 2.0;  // times the usual
-constexpr int kMostFinalists = 12;
+constexpr int kMostFinalists = 5;
 constexpr double kFinalistLocalisations =
     130000;  // views x localisations that the finalists may cost together
 
