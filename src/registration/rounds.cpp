@@ -15,7 +15,9 @@ namespace polar {
 namespace {
 constexpr std::uint32_t kTurnStage = 31;
 constexpr double kLocalisationsPerCentre = 25;
-constexpr int kFewestCentres = 320, kMostCentres = 512;
+constexpr double kFewestPerCentre = 12;  // fewer, and noise is registered as if it were a structure
+constexpr int kFewestOfASurface = 320;
+constexpr int kFewestCentres = 96, kMostCentres = 512;
 constexpr std::size_t kSweepLocalisations = 300;  // of a view while the template is still moving
 constexpr int kGivenSweeps = 8;
 constexpr const char* kUnderWay = "rounds";
@@ -34,8 +36,9 @@ void sweep(const Problem& problem, const Subsets& few, const NoiseModel& noise, 
 }  // namespace
 
 int centres_for(const Problem& problem) {
-  return std::clamp(static_cast<int>(problem.localisations / kLocalisationsPerCentre), kFewestCentres,
-                    kMostCentres);
+  const int few = std::min(static_cast<int>(problem.localisations / kFewestPerCentre), kFewestOfASurface);
+  const int usual = static_cast<int>(problem.localisations / kLocalisationsPerCentre);
+  return std::clamp(std::max(few, usual), kFewestCentres, kMostCentres);
 }
 
 RoundState state_at(const Problem& problem, const RoundOptions& options,

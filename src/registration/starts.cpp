@@ -32,6 +32,7 @@ double localisations(const StartContext& context) {
 // there, with a template of more centres that ends sharper, and many.
 AnnealingOptions annealing(const StartContext& context) {
   AnnealingOptions options;
+  if (context.problem.planar()) return options;  // turns in the plane are few
   const double look_ups_of_a_sweep = localisations(context) * options.rotations * 7.0;
   const double longer = std::clamp(
       kLookUpBudget / kLongStarts / std::max(1.0, look_ups_of_a_sweep) / options.sweeps, 1.0, kLongest);

@@ -144,7 +144,7 @@ import h5py, json
 with h5py.File("results/results.h5") as file:
     def describe(name, item):
         if isinstance(item, h5py.Dataset) and name.split("/")[0] in ("poses", "template", "superparticle"):
-            texts = item.dtype.kind == "O"
+            texts = item.dtype.kind == "S"
             assert texts or ("unit" in item.attrs and "meaning" in item.attrs), name
     file.visititems(describe)
     print(json.dumps({"version": int(file.attrs["format_version"]), "poses": file["poses/rotation"].shape,
