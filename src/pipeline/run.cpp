@@ -12,7 +12,9 @@
 #include "checkpoint_store.hpp"
 #include "halves.hpp"
 #include "input_hash.hpp"
+#include "json_text.hpp"
 #include "output_directory.hpp"
+#include "polar/core/median.hpp"
 #include "polar/model/shipped_weights.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "polar/pipeline/version.hpp"
@@ -149,7 +151,8 @@ std::string strangers_line(const std::vector<Stranger>& found) {
   return line + ": robust standard deviations of log_likelihood from the others";
 }
 
-std::vector<std::string> describe(const Results& r, const std::string& directory, double seconds) {
+std::vector<std::string> describe(const Results& r, const std::vector<Stranger>& unlike,
+                                  const std::string& directory, double seconds) {
   const Registration& g = r.registration;
   const std::size_t n = r.particles.particles.size();
   std::vector<std::string> lines = {"particles    " + std::to_string(accepted_particles(r)) + " of " +
@@ -162,13 +165,9 @@ std::vector<std::string> describe(const Results& r, const std::string& directory
       rotation.push_back(row.rotation_std_deg);
       translation.push_back(row.translation_std_nm);
     }
-  const auto median = [](std::vector<double> v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-  };
-  lines.push_back("precision    " + format("%.2f deg, ", median(rotation)) +
-                  format("%.2f nm", median(translation)) + " (median of the estimated standard deviations)");
-  const std::vector<Stranger> unlike = strangers(pose_rows(r));
+  lines.push_back("precision    " + format("%.2f deg, ", upper_median(rotation)) +
+                  format("%.2f nm", upper_median(translation)) +
+                  " (median of the estimated standard deviations)");
   if (!unlike.empty()) lines.push_back(strangers_line(unlike));
   lines.push_back("start        " + winner(g) + " won of " + std::to_string(g.starts.size()));
   lines.push_back("rounds       " + std::to_string(g.rounds) +
@@ -180,8 +179,9 @@ std::vector<std::string> describe(const Results& r, const std::string& directory
   return lines;
 }
 
-nlohmann::json summary_json(const Results& r, const std::vector<std::string>& lines,
-                            const std::vector<std::string>& files, double seconds) {
+nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlike,
+                            const std::vector<std::string>& lines, const std::vector<std::string>& files,
+                            double seconds) {
   const Registration& g = r.registration;
   nlohmann::json timings = nlohmann::json::array(), starts = nlohmann::json::array();
   for (const auto& t : g.timings) timings.push_back({{"stage", t.stage}, {"seconds", t.seconds}});
@@ -206,7 +206,7 @@ nlohmann::json summary_json(const Results& r, const std::vector<std::string>& li
                             {"seconds", seconds},
                             {"files", files},
                             {"text", lines}};
-  for (const Stranger& s : strangers(pose_rows(r)))
+  for (const Stranger& s : unlike)
     summary["unlike_the_others"].push_back({{"particle", s.particle}, {"deviation", s.deviation}});
   if (g.symmetry) summary["symmetry"] = pipeline::symmetry_json(*g.symmetry, r.normalisation.scale_nm);
   if (!g.weights_sha256.empty()) summary["weights_sha256"] = g.weights_sha256;
@@ -281,11 +281,10 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   }
   const std::vector<std::string> written = write(r, config, directory);
   const double seconds = watch.seconds();
-  const std::vector<std::string> lines = describe(r, config.output.directory, seconds);
-  // A name need not be UTF-8, what JSON holds must.
-  const std::string summary =
-      summary_json(r, lines, written, seconds).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
-  smlm::write_file_atomically(directory.file(kSummary), summary + "\n");
+  const std::vector<Stranger> unlike = strangers(pose_rows(r));
+  const std::vector<std::string> lines = describe(r, unlike, config.output.directory, seconds);
+  smlm::write_file_atomically(directory.file(kSummary),
+                              pipeline::json_text(summary_json(r, unlike, lines, written, seconds)));
   std::vector<std::string> kept = written;
   kept.emplace_back(kSummary);
   directory.remove_other_results(kept);

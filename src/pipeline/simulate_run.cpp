@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "json_text.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/results/picasso.hpp"
 #include "polar/results/pose_table.hpp"
@@ -106,8 +107,7 @@ std::vector<std::string> run_simulation(const SimulateConfig& config, bool overw
                               format_pose_table(true_poses(s, config.simulation.cramer_rao)));
   smlm::write_file_atomically(folder + "sites.csv", sites_text(structure));
   smlm::write_file_atomically(folder + "simulation.yaml", portable_text(config));
-  smlm::write_file_atomically(folder + kTruthFile,
-                              summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  smlm::write_file_atomically(folder + kTruthFile, pipeline::json_text(summary));
 
   std::vector<std::string> lines = {std::to_string(s.particle.size()) + " particles of " + structure.name +
                                         " (" + truth.symmetry + "), " + std::to_string(s.table.size()) +

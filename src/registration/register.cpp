@@ -8,6 +8,7 @@
 #include "latent_method.hpp"
 #include "polar/core/symmetry_group.hpp"
 #include "polar_start.hpp"
+#include "self_similarity.hpp"
 #include "smlm/error.hpp"
 #include "starts.hpp"
 #include "states.hpp"
@@ -101,7 +102,10 @@ bool fuse(Run& run, const RegistrationOptions& options, FusedState& fused) {
   const int searches = std::clamp(static_cast<int>(kFewLocalisations / std::max(1.0, problem.localisations)),
                                   1, kMostLastSearches);
   for (int k = 0; k < searches && (k == 0 || state.escaped > 0); ++k, ++state.rounds) {
-    search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
+    const std::vector<Pose> before = state.pose;
+    const std::vector<std::size_t> escaped =
+        search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
+    state.twins = twins(state.mixture, problem.planar(), before, state.pose, escaped);
     noise = calibrate_and_fuse(problem, 1, noise, state);
   }
   if (state.sites) noise = choose_centres(problem, noise, state);

@@ -6,7 +6,6 @@
 #include "polar/core/rng.hpp"
 #include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/search_again.hpp"
-#include "self_similarity.hpp"
 #include "states.hpp"
 #include "template_tools.hpp"
 
@@ -55,8 +54,9 @@ RoundState state_at(const Problem& problem, const RoundOptions& options,
   return state;
 }
 
-void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptions& options, NoiseModel noise,
-                const Subsets& subset, RoundState& state) {
+std::vector<std::size_t> search_all(const Problem& problem, const SearchGrid& grid,
+                                    const RoundOptions& options, NoiseModel noise, const Subsets& subset,
+                                    RoundState& state) {
   noise.width = std::max(noise.width, options.search_width);
   SearchAgainOptions search;
   search.basins = options.basins;
@@ -72,12 +72,11 @@ void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptio
   }
   const Eigen::Matrix3f turn = grid_turn(
       problem.planar(), KeyedRandom(problem.seed, static_cast<std::uint64_t>(state.rounds), kTurnStage));
-  const std::vector<Pose> before = state.pose;
-  const SearchAgainReport report =
+  SearchAgainReport report =
       search_again(problem.views, problem.axes, subset, state.mixture, noise, grid, turn, search, state.pose);
-  state.margin = report.margin;
+  state.margin = std::move(report.margin);
   state.escaped = static_cast<int>(report.escaped.size());
-  state.twins = twins(state.mixture, problem.planar(), before, state.pose, report.escaped);
+  return std::move(report.escaped);
 }
 
 bool run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,

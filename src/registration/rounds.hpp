@@ -42,7 +42,7 @@ struct RoundState {
   double held_out = -1e300;  // mean log density of the held-out localisations at that width
   int rounds = 0;
   int escaped = 0;     // in the last search
-  int twins = 0;       // of these, to where the template looks the same (self_similarity.hpp)
+  int twins = 0;       // of these, in the last search of all, to where the template looks the same
   bool parts = false;  // views show parts of the structure: the first search shifts them far
 };
 
@@ -54,8 +54,10 @@ RoundState state_at(const Problem& problem, const RoundOptions& options,
                     std::vector<Pose> template_from_view);
 
 /// One FLAMES over all views under the present template; looks at the first few of `subset` of each view.
-void search_all(const Problem& problem, const SearchGrid& grid, const RoundOptions& options, NoiseModel noise,
-                const Subsets& subset, RoundState& state);
+/// Returns the views that escaped.
+std::vector<std::size_t> search_all(const Problem& problem, const SearchGrid& grid,
+                                    const RoundOptions& options, NoiseModel noise, const Subsets& subset,
+                                    RoundState& state);
 
 /// From a template and poses of some views (identity for the others) to poses of all. Narrows as long as
 /// held-out localisations gain by it: few localisations end with a wide template. False: cancelled between

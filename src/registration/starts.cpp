@@ -14,18 +14,19 @@ namespace {
 
 constexpr int kFewestRandom = 3, kMostRandom = 12;
 constexpr double kLookUpBudget =
-    3.0e9;                      // over all random starts: seconds on two cores, whatever the size of the set
-constexpr int kLongStarts = 6;  // that the budget must allow
+    3.0e9;                       // over all random starts: seconds on two cores, whatever the size of the set
+constexpr double kShifts = 7.0;  // tried for every rotation
+constexpr int kLongStarts = 6;   // that the budget must allow
 constexpr double kLongest = 2.0;  // times the usual
 constexpr int kMostFinalists = 5;
 constexpr double kFinalistLocalisations =
     130000;  // views x localisations that the finalists may cost together
 
-double localisations(const StartContext& context) {
-  double total = 0;
+double look_ups_of_a_sweep(const StartContext& context, const AnnealingOptions& options) {
+  double localisations = 0;
   for (const int i : context.which)
-    total += static_cast<double>(context.fitted[static_cast<std::size_t>(i)].size());
-  return total;
+    localisations += static_cast<double>(context.fitted[static_cast<std::size_t>(i)].size());
+  return std::max(1.0, localisations * options.rotations * kShifts);
 }
 
 // What the budget buys: where localisations are few a start is cheap and often fails, so starts are long
@@ -33,9 +34,8 @@ double localisations(const StartContext& context) {
 AnnealingOptions annealing(const StartContext& context) {
   AnnealingOptions options;
   if (context.problem.planar()) return options;  // turns in the plane are few
-  const double look_ups_of_a_sweep = localisations(context) * options.rotations * 7.0;
   const double longer = std::clamp(
-      kLookUpBudget / kLongStarts / std::max(1.0, look_ups_of_a_sweep) / options.sweeps, 1.0, kLongest);
+      kLookUpBudget / kLongStarts / look_ups_of_a_sweep(context, options) / options.sweeps, 1.0, kLongest);
   options.sweeps = static_cast<int>(options.sweeps * longer);
   options.centres = static_cast<int>(options.centres * longer);
   options.last_width /= std::sqrt(longer);
@@ -44,8 +44,8 @@ AnnealingOptions annealing(const StartContext& context) {
 
 int random_starts(const StartContext& context) {
   const AnnealingOptions usual;
-  const double look_ups = localisations(context) * usual.rotations * 7.0 * usual.sweeps;
-  return std::clamp(static_cast<int>(kLookUpBudget / std::max(1.0, look_ups)), kFewestRandom, kMostRandom);
+  return std::clamp(static_cast<int>(kLookUpBudget / (look_ups_of_a_sweep(context, usual) * usual.sweeps)),
+                    kFewestRandom, kMostRandom);
 }
 
 std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartContext& plain,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polar/core/median.hpp"
+
 namespace polar {
 
 namespace {
@@ -10,12 +12,6 @@ constexpr std::size_t kFewest = 10;
 constexpr double kFar = 6;               // Gaussian particles: one in 500 million
 constexpr double kNormalOfMad = 1.4826;  // the standard deviation of a normal with this MAD
 constexpr double kSmallestScale = 0.02;  // nat: what says nothing however alike the others are
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 }  // namespace
 
 std::vector<Stranger> strangers(const std::vector<PoseRow>& rows) {
@@ -23,9 +19,9 @@ std::vector<Stranger> strangers(const std::vector<PoseRow>& rows) {
   for (const PoseRow& row : rows)
     if (row.accepted && std::isfinite(row.log_likelihood)) value.push_back(row.log_likelihood);
   if (value.size() < kFewest) return {};
-  const double middle = median(value);
+  const double middle = upper_median(value);
   for (const double v : value) distance.push_back(std::abs(v - middle));
-  const double scale = std::max(kNormalOfMad * median(distance), kSmallestScale);
+  const double scale = std::max(kNormalOfMad * upper_median(distance), kSmallestScale);
   std::vector<Stranger> found;
   for (const PoseRow& row : rows) {
     const double deviation = (row.log_likelihood - middle) / scale;

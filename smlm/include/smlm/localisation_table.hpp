@@ -30,7 +30,7 @@ struct Rejection {
 
 struct LocalisationTable {
   std::vector<std::array<double, 3>> position_nm;  // z = 0 in planar tables
-  std::vector<Covariance> covariance_nm2;   // positive definite; in planar tables zz is only a placeholder
+  std::vector<Covariance> covariance_nm2;   // positive definite; zz of a planar table is not registered with
   std::vector<std::int64_t> particle;       // index into particle_names; -1 where unassigned
   std::vector<std::string> particle_names;  // in order of first appearance
   std::vector<std::uint32_t> source_file;   // index into files
