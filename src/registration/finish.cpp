@@ -46,8 +46,8 @@ double choose_occupancy(const Problem& problem, const Jury& jury, const NoiseMod
   return best;
 }
 
-NoiseModel calibrated(const Problem& problem, const Jury& jury, const NoiseModel& noise,
-                      const RoundState& state) {
+CalibrationReport calibrated(const Problem& problem, const Jury& jury, const NoiseModel& noise,
+                             const RoundState& state) {
   std::vector<std::vector<float>> factors;
   if (std::isfinite(state.occupancy)) {
     const FusionData fitted(problem.views, problem.axes, noise, jury.fitted, jury.which);
@@ -57,16 +57,24 @@ NoiseModel calibrated(const Problem& problem, const Jury& jury, const NoiseModel
     for (std::size_t k = 0; k < own.size(); ++k)
       factors[static_cast<std::size_t>(jury.which[k])] = std::move(own[k]);
   }
-  return calibrate(problem.views, problem.axes, jury.held_out, state.mixture, state.pose, noise, factors)
-      .noise;
+  return calibrate(problem.views, problem.axes, jury.held_out, state.mixture, state.pose, noise, factors);
 }
 
 }  // namespace
 
 NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noise, RoundState& state) {
   const Jury few = jury(problem);
+  double kept_score = -std::numeric_limits<double>::infinity();
+  RoundState kept;
   for (int cycle = 0; cycle < cycles; ++cycle) {
-    noise = calibrated(problem, few, noise, state);
+    const CalibrationReport report = calibrated(problem, few, noise, state);
+    if (report.log_likelihood < kept_score) {
+      state = std::move(kept);
+      return noise;
+    }
+    kept_score = report.log_likelihood;
+    kept = state;
+    noise = report.noise;
     fuse(problem, noise, few, final_fusion(state), kFuseSweeps, state);
   }
   return noise;
@@ -93,7 +101,7 @@ NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, Round
     double score = 0;
     for (int cycle = 0; cycle < 2; ++cycle) {
       fuse(problem, trial_noise, few, final_fusion(trial), kMergedSweeps / 2, trial);
-      trial_noise = calibrated(problem, few, trial_noise, trial);
+      trial_noise = calibrated(problem, few, trial_noise, trial).noise;
       score = choose_occupancy(problem, few, trial_noise, trial);
     }
     if (score < best_score - kHopeless) break;
@@ -103,6 +111,7 @@ NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, Round
     best_noise = trial_noise;
   }
   state = best;
+  state.held_out = best_score;
   return best_noise;
 }
 
@@ -134,6 +143,8 @@ void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& sta
     else if (!v.template_from_view.rotation.allFinite() || !v.template_from_view.translation.allFinite() ||
              !v.covariance.allFinite() || !std::isfinite(v.log_likelihood))
       v.reason = "its registration did not end in finite numbers";
+    else if (state.structureless)
+      v.reason = "the particles have no structure in common that explains localisations kept apart";
     else if (v.outlier_fraction > kMostOutliers)
       v.reason = "the template explains too few of its localisations";
     else if (!(rotation_std < kMostRotationStd))

@@ -7,8 +7,9 @@
 
 namespace polar {
 
-/// Fits noise model and template in turn, everything judged by held-out localisations; returns the noise
-/// model.
+/// Fits noise model and template in turn, everything judged by held-out localisations, and stops where these
+/// are explained worse: a template fitted under too much blur clumps, and then asks for more. Returns the
+/// noise model.
 NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noise, RoundState& state);
 
 /// Mean log density per held-out localisation, each view weighing the centres in its own way where that

@@ -12,6 +12,7 @@
 #include "smlm/error.hpp"
 #include "starts.hpp"
 #include "states.hpp"
+#include "structureless.hpp"
 #include "symmetry_stage.hpp"
 #include "symmetry_units.hpp"
 
@@ -98,13 +99,17 @@ bool fuse(Run& run, const RegistrationOptions& options, FusedState& fused) {
     noise = choose_centres(problem, noise, state);
     run.timed("symmetry");
   }
+  state.structureless = explains_no_more_than_a_cloud(problem, state.held_out);
   // A few localisations fit noise at first, and each view that is set right sharpens the template.
   const int searches = std::clamp(static_cast<int>(kFewLocalisations / std::max(1.0, problem.localisations)),
                                   1, kMostLastSearches);
   for (int k = 0; k < searches && (k == 0 || state.escaped > 0); ++k, ++state.rounds) {
     const std::vector<Pose> before = state.pose;
-    const std::vector<std::size_t> escaped =
+    std::vector<std::size_t> escaped =
         search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
+    for (const std::size_t i : search_misfits(problem, run.grid, run.rounds, noise, state))
+      if (std::find(escaped.begin(), escaped.end(), i) == escaped.end()) escaped.push_back(i);
+    state.escaped = static_cast<int>(escaped.size());
     state.twins = twins(state.mixture, problem.planar(), before, state.pose, escaped);
     noise = calibrate_and_fuse(problem, 1, noise, state);
   }

@@ -19,6 +19,7 @@ constexpr int kFewestOfASurface = 320;
 constexpr int kFewestCentres = 96, kMostCentres = 512;
 constexpr std::size_t kSweepLocalisations = 300;  // of a view while the template is still moving
 constexpr int kGivenSweeps = 8;
+constexpr double kMisfits = 0.1;  // share of the views
 constexpr const char* kUnderWay = "rounds";
 
 void sweep(const Problem& problem, const Subsets& few, const NoiseModel& noise, int sweeps, int round,
@@ -30,6 +31,28 @@ void sweep(const Problem& problem, const Subsets& few, const NoiseModel& noise, 
     maximise(state.mixture, data, state.pose, em);
     if (s > 0) refine_poses(state.mixture, data, state.pose, 2);
   }
+}
+
+// `far`: with shifts as large as the structure.
+SearchAgainReport search(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,
+                         NoiseModel noise, const Subsets& subset, bool far, RoundState& state) {
+  noise.width = std::max(noise.width, options.search_width);
+  SearchAgainOptions search;
+  search.basins = options.basins;
+  search.group = state.group;
+  search.most_localisations = options.search_localisations;
+  search.grid.translation = axis_shifts(options.shift, problem.planar());
+  search.grid.promising = options.promising;
+  search.grid.step = options.step;
+  if (far) {
+    search.grid.translation = lattice_shifts(options.far_reach, options.far_spacing, problem.planar());
+    search.grid.step = static_cast<float>(options.far_spacing / 2);
+    search.coarse_localisations = options.far_coarse;
+  }
+  const Eigen::Matrix3f turn = grid_turn(
+      problem.planar(), KeyedRandom(problem.seed, static_cast<std::uint64_t>(state.rounds), kTurnStage));
+  return search_again(problem.views, problem.axes, subset, state.mixture, noise, grid, turn, search,
+                      state.pose);
 }
 
 }  // namespace
@@ -55,28 +78,32 @@ RoundState state_at(const Problem& problem, const RoundOptions& options,
 }
 
 std::vector<std::size_t> search_all(const Problem& problem, const SearchGrid& grid,
-                                    const RoundOptions& options, NoiseModel noise, const Subsets& subset,
-                                    RoundState& state) {
-  noise.width = std::max(noise.width, options.search_width);
-  SearchAgainOptions search;
-  search.basins = options.basins;
-  search.group = state.group;
-  search.most_localisations = options.search_localisations;
-  search.grid.translation = axis_shifts(options.shift, problem.planar());
-  search.grid.promising = options.promising;
-  search.grid.step = options.step;
-  if (state.parts && state.rounds == 0) {
-    search.grid.translation = lattice_shifts(options.parts_reach, options.parts_spacing, problem.planar());
-    search.grid.step = static_cast<float>(options.parts_spacing / 2);
-    search.coarse_localisations = options.parts_coarse;
-  }
-  const Eigen::Matrix3f turn = grid_turn(
-      problem.planar(), KeyedRandom(problem.seed, static_cast<std::uint64_t>(state.rounds), kTurnStage));
-  SearchAgainReport report =
-      search_again(problem.views, problem.axes, subset, state.mixture, noise, grid, turn, search, state.pose);
+                                    const RoundOptions& options, const NoiseModel& noise,
+                                    const Subsets& subset, RoundState& state) {
+  const bool far = state.parts && state.rounds == 0;
+  SearchAgainReport report = search(problem, grid, options, noise, subset, far, state);
   state.margin = std::move(report.margin);
   state.escaped = static_cast<int>(report.escaped.size());
   return std::move(report.escaped);
+}
+
+std::vector<std::size_t> search_misfits(const Problem& problem, const SearchGrid& grid,
+                                        const RoundOptions& options, const NoiseModel& noise,
+                                        RoundState& state) {
+  const FusionData data(problem.views, problem.axes, noise, first_of(problem.shuffled, kSweepLocalisations));
+  const std::vector<double> fit = mean_log_likelihood(state.mixture, data, state.pose);
+  std::vector<int> order = problem.all;
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return fit[static_cast<std::size_t>(a)] < fit[static_cast<std::size_t>(b)];
+  });
+  order.resize(static_cast<std::size_t>(std::ceil(kMisfits * static_cast<double>(problem.size()))));
+  Subsets subset(problem.size());
+  for (const int i : order)
+    subset[static_cast<std::size_t>(i)] = problem.shuffled[static_cast<std::size_t>(i)];
+  const SearchAgainReport report = search(problem, grid, options, noise, subset, true, state);
+  for (const int i : order)
+    state.margin[static_cast<std::size_t>(i)] = report.margin[static_cast<std::size_t>(i)];
+  return report.escaped;
 }
 
 bool run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptions& options,

@@ -21,8 +21,8 @@ struct RoundOptions {
   double first_width = 0.09, last_width = 0.03, narrowing = 0.72;
   double search_width = 0.05;  // the search looks at the template no sharper than this
   float shift = 0.10f, step = 0.06f;
-  double parts_reach = 1.2, parts_spacing = 0.2;  // of the shifts where views show parts of the structure
-  int parts_coarse = 32;                          // localisations looked at for every one of them
+  double far_reach = 1.2, far_spacing = 0.2;  // of the shifts where the centre of a view may be far off
+  int far_coarse = 32;                        // localisations looked at for every one of them
   int promising = 200;
   int sweeps = 4;  // of EM and pose steps after each search
   int most_searches = 4;
@@ -39,11 +39,12 @@ struct RoundState {
   RotationGroup group;                          // of the template, where one is imposed (symmetry.hpp)
   bool sites = false;        // the template is one of discrete sites of equal weight (finish.hpp)
   double width = 0;          // of the template after the last round kept
-  double held_out = -1e300;  // mean log density of the held-out localisations at that width
+  double held_out = -1e300;  // mean log density of the held-out localisations at that width, later calibrated
   int rounds = 0;
-  int escaped = 0;     // in the last search
-  int twins = 0;       // of these, in the last search of all, to where the template looks the same
-  bool parts = false;  // views show parts of the structure: the first search shifts them far
+  int escaped = 0;             // in the last search
+  int twins = 0;               // of these, in the last search of all, to where the template looks the same
+  bool parts = false;          // views show parts of the structure: the first search shifts them far
+  bool structureless = false;  // held-out localisations are explained no better than by a cloud
 };
 
 /// Number of centres for so many localisations: enough for a surface, few enough to be determined.
@@ -56,8 +57,14 @@ RoundState state_at(const Problem& problem, const RoundOptions& options,
 /// One FLAMES over all views under the present template; looks at the first few of `subset` of each view.
 /// Returns the views that escaped.
 std::vector<std::size_t> search_all(const Problem& problem, const SearchGrid& grid,
-                                    const RoundOptions& options, NoiseModel noise, const Subsets& subset,
-                                    RoundState& state);
+                                    const RoundOptions& options, const NoiseModel& noise,
+                                    const Subsets& subset, RoundState& state);
+
+/// Once more for the tenth of the views that the template explains worst, with far shifts: what lies beside a
+/// particle moves the centre that its view was given. Returns the views that escaped.
+std::vector<std::size_t> search_misfits(const Problem& problem, const SearchGrid& grid,
+                                        const RoundOptions& options, const NoiseModel& noise,
+                                        RoundState& state);
 
 /// From a template and poses of some views (identity for the others) to poses of all. Narrows as long as
 /// held-out localisations gain by it: few localisations end with a wide template. False: cancelled between

@@ -48,9 +48,9 @@ void fields(Archive& archive, Hypothesis& value) {
 template <class Archive>
 void fields(Archive& archive, RoundState& value) {
   auto& [mixture, pose, margin, crowded, occupancy, group, sites, width, held_out, rounds, escaped, twins,
-         parts] = value;
+         parts, structureless] = value;
   archive(mixture, pose, margin, crowded, occupancy, group, sites, width, held_out, rounds, escaped, twins,
-          parts);
+          parts, structureless);
 }
 template <class Archive>
 void fields(Archive& archive, RoundsUnderWay& value) {

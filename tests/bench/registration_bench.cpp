@@ -54,8 +54,9 @@ constexpr Case kCases[] = {{"noise_0.15", 1024, 0.15},
                            {"points_200", 200, 0.05},
                            {"points_50", 50, 0.05}};
 
-SimulationOptions options_of(const Case& c) {
+SimulationOptions options_of(const Case& c, std::uint64_t draw) {
   SimulationOptions o;
+  o.seed = draw;
   o.particles = kViews;
   o.sampling = "points";
   o.points = {c.points, c.points};
@@ -76,8 +77,8 @@ struct Task {
   std::vector<Pose> truth_nm;
 };
 
-Task simulated(const Structure& structure, const Case& c) {
-  Simulation s = simulate(structure, options_of(c));
+Task simulated(const Structure& structure, const Case& c, std::uint64_t draw) {
+  Simulation s = simulate(structure, options_of(c, draw));
   Task task;
   for (const SimulatedParticle& p : s.particle) task.truth_nm.push_back(p.structure_from_view);
   task.particles = smlm::group_particles(std::move(s.table));
@@ -165,9 +166,9 @@ Outcome measured(const Task& task, const std::function<Registration(const Views&
   return out;
 }
 
-void hard_case(const Shape& shape, const Structure& structure, const Case& c,
+void hard_case(const Shape& shape, const Structure& structure, const Case& c, std::uint64_t draw,
                const RegistrationOptions& options) {
-  const Task task = simulated(structure, c);
+  const Task task = simulated(structure, c, draw);
   Progress silent;
   const Outcome found = measured(task, [&](const Views& v) { return register_views(v, options, silent); });
   const Outcome from_truth = measured(task, [&](const Views& v) {
@@ -219,12 +220,13 @@ int main(int argc, char** argv) {
   CLI::App app("Recall of registration in hard cases, and on polar_sample.h5");
   std::string folder, sample;
   std::vector<std::string> shapes, cases;
-  std::uint64_t seeds = 3;
+  std::uint64_t seeds = 3, draw = 1;
   std::size_t most_views = 100;
   RegistrationOptions options;
   app.add_option("folder", folder, "folder of princeton_shape_benchmark_dev.h5");
   app.add_option("--sample", sample, "polar_sample.h5: its two groups");
   app.add_option("--seeds", seeds, "seeds 1 to this one, of the sample");
+  app.add_option("--draw", draw, "seed of the views that are drawn of a shape");
   app.add_option("--shape", shapes, "only these shapes");
   app.add_option("--case", cases, "only these cases or groups");
   app.add_option("--search", options.search, "fast | exhaustive");
@@ -265,7 +267,7 @@ int main(int argc, char** argv) {
         if (!chosen(shapes, shape.name)) continue;
         const Structure structure =
             read_structure({folder + "/princeton_shape_benchmark_dev.h5", "", shape.index, kRadius_nm});
-        hard_case(shape, structure, c, options);
+        hard_case(shape, structure, c, draw, options);
       }
     }
   } catch (const smlm::Error& error) {

@@ -140,11 +140,22 @@ class Surroundings(PolarCase):
             self.assertLess(report["median_rotation_deg"], 0.05)  # single precision: 0.002 on six pores
 
     def test_noise_is_not_registered(self):
-        random_numbers = random.Random(1)
-        rows = "".join(",".join(f"{random_numbers.gauss(0, 30):.3f}" for _ in range(3)) + f",3,3,6,{i % 20}\n"
-                       for i in range(20 * 60))
+        for seed in range(1, 4):
+            random_numbers = random.Random(seed)
+            rows = "".join(",".join(f"{random_numbers.gauss(0, 30):.3f}" for _ in range(3)) + f",3,3,6,{i % 20}\n"
+                           for i in range(20 * 60))
+            self.write("data/localisations.csv", HEADER + rows)
+            self.fails(5, "no structure in common", *self.RUN)
+
+    def test_noise_with_a_sharp_outline_is_not_registered(self):
+        random_numbers = random.Random(4)
+        rows = ""
+        for i in range(20 * 60):
+            x = [random_numbers.gauss(0, 1) for _ in range(3)]
+            scale = 50 * random_numbers.random() ** (1 / 3) / sum(a * a for a in x) ** 0.5
+            rows += ",".join(f"{scale * a:.3f}" for a in x) + f",3,3,6,{i % 20}\n"
         self.write("data/localisations.csv", HEADER + rows)
-        self.fails(5, "no particle could be registered", *self.RUN)
+        self.fails(5, "no structure in common", *self.RUN)
 
 
 if __name__ == "__main__":
