@@ -46,8 +46,8 @@ void draw_poses(const StartContext& context, const NoiseModel& noise, const Sear
   const DirectionVolumes volumes(h.mixture, classes, directions_for(classes, p.planar()), p.planar());
   parallel_for(context.which.size(), [&](std::size_t v) {
     const auto i = static_cast<std::size_t>(context.which[v]);
-    if (context.aligned[i].empty()) return;
-    const SearchView view = search_view(p.views.view[i], p.axes[i], noise, classes, context.aligned[i]);
+    if (context.fitted[i].empty()) return;
+    const SearchView view = search_view(p.views.view[i], p.axes[i], noise, classes, context.fitted[i]);
     const GridScores scores = score_grid(volumes, view, grid, turn, search);
     KeyedRandom random(p.seed, i, stage);
     const std::size_t at = draw(scores.log_likelihood, beta, random.uniform());
@@ -59,7 +59,7 @@ void draw_poses(const StartContext& context, const NoiseModel& noise, const Sear
 
 StartContext start_context(const Problem& problem) {
   return {problem, some_views(problem, kMostViews), first_of(problem.fitted, kMostLocalisations),
-          aligned(problem, kMostLocalisations), first_of(problem.held_out, kMostHeldOut)};
+          first_of(problem.held_out, kMostHeldOut)};
 }
 
 Hypothesis with_template(const StartContext& context, int centres, Hypothesis h) {
@@ -106,7 +106,7 @@ void anneal(const StartContext& context, const AnnealingOptions& options, bool k
       const Eigen::Matrix3f turn = random_rotation(turns, p.planar()).cast<float>();
       draw_poses(context, noise, grid, turn, search, interpolate(options.first_beta, options.last_beta, t),
                  kDrawStage + 16 * static_cast<std::uint32_t>(sweep + 1000 * h.number), h);
-      refine_poses(h.mixture, FusionData(p.views, p.axes, noise, context.aligned, context.which), h.pose, 3);
+      refine_poses(h.mixture, data, h.pose, 3);
     }
     MaximisationOptions em = fusion_options(h.crowded, noise.width);
     em.seed = p.seed + key * 1000 + static_cast<std::uint64_t>(sweep);

@@ -19,7 +19,6 @@ struct StartContext {
   const Problem& problem;
   std::vector<int> which;  // views
   Subsets fitted;          // per view of the problem
-  Subsets aligned;         // with these a view is turned (problem.hpp)
   Subsets held_out;
 };
 StartContext start_context(const Problem& problem);

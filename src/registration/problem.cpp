@@ -75,14 +75,4 @@ Subsets first_of(const Subsets& subsets, std::size_t most) {
   return few;
 }
 
-Subsets aligned(const Problem& problem, std::size_t most) {
-  Subsets subsets = first_of(problem.fitted, most);
-  for (std::size_t i = 0; i < subsets.size(); ++i) {
-    const std::vector<std::uint32_t>& more = problem.held_out[i];
-    const std::size_t missing = std::min(most - subsets[i].size(), more.size());
-    subsets[i].insert(subsets[i].end(), more.begin(), more.begin() + static_cast<std::ptrdiff_t>(missing));
-  }
-  return subsets;
-}
-
 }  // namespace polar

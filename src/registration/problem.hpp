@@ -41,10 +41,4 @@ std::vector<int> some_views(const Problem& problem, std::size_t most);
 /// The first `most` of every list.
 Subsets first_of(const Subsets& subsets, std::size_t most);
 
-/// What poses are estimated from in the starts, at most `most` localisations of each view: the fitted, and
-/// where those are fewer also the held out. A pose has six numbers, a template hundreds, so judging loses
-/// little by it, and a view of few localisations needs every one. Not in the rounds that follow: there
-/// symmetric particles would be turned until their bright sites, whose blinks are among both, lie on one.
-Subsets aligned(const Problem& problem, std::size_t most);
-
 }  // namespace polar
