@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polar/core/median.hpp"
 #include "polar/core/nelder_mead.hpp"
 
 namespace polar {
@@ -50,9 +51,7 @@ bool has_axis(const Views& views, const std::vector<Eigen::Vector3f>& axes) {
     const AxialSigma s = axial_sigma(views.view[i].covariance.front(), axes[i]);
     if (s.lateral > 0) ratio.push_back(std::max(s.axial / s.lateral, s.lateral / std::max(s.axial, 1e-9f)));
   }
-  if (ratio.empty()) return false;
-  std::nth_element(ratio.begin(), ratio.begin() + static_cast<std::ptrdiff_t>(ratio.size() / 2), ratio.end());
-  return ratio[ratio.size() / 2] > kAxisRatio;
+  return !ratio.empty() && upper_median(std::move(ratio)) > kAxisRatio;
 }
 
 CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3f>& axes,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mixture_kernel_choice.hpp"
+#include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/fusion/direction_volumes.hpp"
 #include "polar/fusion/pose_search.hpp"
@@ -43,9 +44,7 @@ Mixture mixture_of(const Eigen::Matrix3Xf& points) {
 double typical_sigma(const View& view) {
   std::vector<float> variance;
   for (const Symmetric3& c : view.covariance) variance.push_back((c[0] + c[3] + c[5]) / 3);
-  const auto middle = variance.begin() + static_cast<std::ptrdiff_t>(variance.size() / 2);
-  std::nth_element(variance.begin(), middle, variance.end());
-  return std::sqrt(static_cast<double>(*middle));
+  return std::sqrt(static_cast<double>(upper_median(std::move(variance))));
 }
 
 struct Partial {

@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 
+#include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/latent/loss.hpp"
@@ -58,9 +59,7 @@ double common_scale(const Views& views, double outlier_fraction) {
   for (const View& view : views.view)
     if (view.points.cols() > 0) radius.push_back(radius_of(view, outlier_fraction));
   if (radius.empty()) return 1;
-  std::nth_element(radius.begin(), radius.begin() + static_cast<std::ptrdiff_t>(radius.size() / 2),
-                   radius.end());
-  const double median = radius[radius.size() / 2];
+  const double median = upper_median(std::move(radius));
   return median > 0 ? 1 / median : 1;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "polar/core/median.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/fusion/maximisation.hpp"
 #include "template_tools.hpp"
@@ -28,9 +29,7 @@ constexpr std::size_t kRelaxedLocalisations = 200;                  // of a view
 std::size_t median_size(const Subsets& subsets, const std::vector<int>& which) {
   std::vector<std::size_t> size;
   for (const int i : which) size.push_back(subsets[static_cast<std::size_t>(i)].size());
-  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-  std::nth_element(size.begin(), middle, size.end());
-  return size.empty() ? 0 : *middle;
+  return size.empty() ? 0 : upper_median(std::move(size));
 }
 
 Eigen::Matrix3f turn_of(const Problem& problem, std::size_t view) {

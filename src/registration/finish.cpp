@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "jury.hpp"
-#include "polar/fusion/calibration.hpp"
 #include "polar/fusion/discretise.hpp"
 #include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/occupancy.hpp"
@@ -84,7 +83,7 @@ double held_out_score_of_parts(const Problem& problem, const NoiseModel& noise, 
   return choose_occupancy(problem, jury(problem), noise, state);
 }
 
-NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state) {
+CalibrationReport choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state) {
   const Jury few = jury(problem);
   double best_score = choose_occupancy(problem, few, noise, state);
   RoundState best = state;
@@ -111,8 +110,7 @@ NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, Round
     best_noise = trial_noise;
   }
   state = best;
-  state.held_out = best_score;
-  return best_noise;
+  return {best_noise, best_score};
 }
 
 void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& state, Registration& out) {

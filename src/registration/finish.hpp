@@ -2,6 +2,7 @@
 #pragma once
 
 #include "polar/core/progress.hpp"
+#include "polar/fusion/calibration.hpp"
 #include "polar/registration/registration.hpp"
 #include "rounds.hpp"
 
@@ -17,7 +18,8 @@ NoiseModel calibrate_and_fuse(const Problem& problem, int cycles, NoiseModel noi
 double held_out_score_of_parts(const Problem& problem, const NoiseModel& noise, RoundState state);
 
 /// Fewer centres where held-out localisations are explained as well: a few sites instead of a surface.
-NoiseModel choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state);
+/// Returns the noise model and how well it explains them.
+CalibrationReport choose_centres(const Problem& problem, const NoiseModel& noise, RoundState& state);
 
 /// Poses, covariances, scores and verdicts of all views into `registration`.
 void polish_all(const Problem& problem, const NoiseModel& noise, RoundState& state,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polar/core/median.hpp"
 #include "polar/fusion/mixture.hpp"
 #include "polar_start.hpp"
 #include "template_tools.hpp"
@@ -33,9 +34,7 @@ double spacing(const Eigen::Matrix3Xf& points) {
       if (j != i) best = std::min(best, (points.col(i) - points.col(j)).squaredNorm());
     nearest.push_back(std::sqrt(best));
   }
-  std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2),
-                   nearest.end());
-  return static_cast<double>(nearest[nearest.size() / 2]);
+  return static_cast<double>(upper_median(std::move(nearest)));
 }
 
 }  // namespace

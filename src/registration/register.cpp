@@ -90,16 +90,18 @@ bool fuse(Run& run, const RegistrationOptions& options, FusedState& fused) {
   noise = calibrate_and_fuse(problem, 3, noise, state);
   run.timed("calibration");
   if (run.progress.cancelled()) return false;
-  noise = choose_centres(problem, noise, state);
+  CalibrationReport chosen = choose_centres(problem, noise, state);
+  noise = chosen.noise;
   run.timed("centres");
   if (run.progress.cancelled()) return false;
   if (imposes(options)) {
     run.out.symmetry = impose_symmetry(problem, noise, options.symmetry, state);
     noise = calibrate_and_fuse(problem, 1, noise, state);
-    noise = choose_centres(problem, noise, state);
+    chosen = choose_centres(problem, noise, state);
+    noise = chosen.noise;
     run.timed("symmetry");
   }
-  state.structureless = explains_no_more_than_a_cloud(problem, state.held_out);
+  state.structureless = explains_no_more_than_a_cloud(problem, chosen.log_likelihood);
   // A few localisations fit noise at first, and each view that is set right sharpens the template.
   const int searches = std::clamp(static_cast<int>(kFewLocalisations / std::max(1.0, problem.localisations)),
                                   1, kMostLastSearches);
@@ -113,7 +115,7 @@ bool fuse(Run& run, const RegistrationOptions& options, FusedState& fused) {
     state.twins = twins(state.mixture, problem.planar(), before, state.pose, escaped);
     noise = calibrate_and_fuse(problem, 1, noise, state);
   }
-  if (state.sites) noise = choose_centres(problem, noise, state);
+  if (state.sites) noise = choose_centres(problem, noise, state).noise;
   run.timed("last search");
   return true;
 }

@@ -39,7 +39,7 @@ struct RoundState {
   RotationGroup group;                          // of the template, where one is imposed (symmetry.hpp)
   bool sites = false;        // the template is one of discrete sites of equal weight (finish.hpp)
   double width = 0;          // of the template after the last round kept
-  double held_out = -1e300;  // mean log density of the held-out localisations at that width, later calibrated
+  double held_out = -1e300;  // mean log density of the held-out localisations at that width
   int rounds = 0;
   int escaped = 0;             // in the last search
   int twins = 0;               // of these, in the last search of all, to where the template looks the same
