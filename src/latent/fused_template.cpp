@@ -50,9 +50,7 @@ double outliers_of(const LatentViews& views, const std::vector<int>& which) {
 }  // namespace
 
 std::vector<int> best_views(const LatentViews& views, const std::vector<double>& loss, double share) {
-  std::vector<int> order;
-  for (std::size_t i = 0; i < views.view.size(); ++i)
-    if (!views.view[i].empty()) order.push_back(static_cast<int>(i));
+  std::vector<int> order = with_localisations(views);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return loss[static_cast<std::size_t>(a)] < loss[static_cast<std::size_t>(b)];
   });

@@ -17,7 +17,6 @@ namespace {
 
 constexpr int kSearched = 256;        // localisations of a view while basins are sought
 constexpr double kTrusted = 2.0 / 3;  // of the views, those of lowest loss, make the template until the end
-constexpr double kSettled = 0.01;     // of the views may still escape
 constexpr int kTightenings = 3, kEvaluations = 4;  // fusing and descending by turns after a search
 constexpr double kUnknown = 1e300;
 
@@ -43,17 +42,20 @@ class Growth {
     out.loops = 1;
     progress_.step("latent", out.loops, options_.most_loops);
     out.stopped_because = "the number of loops is limited to " + std::to_string(options_.most_loops);
+    std::vector<int> searched = with_localisations(views_);
     while (out.loops < options_.most_loops && !progress_.cancelled()) {
-      out.escaped = multistart_.improve(views_, points_, out.loops, true, forgotten());
+      const std::vector<int> escaped =
+          multistart_.improve(views_, points_, out.loops, true, searched, forgotten(searched));
       if (progress_.cancelled()) break;
+      out.escaped = static_cast<int>(escaped.size());
       tighten(kTrusted);
       progress_.step("latent", ++out.loops, options_.most_loops);
-      if (out.escaped <= kSettled * static_cast<double>(views_.view.size())) {
+      if (escaped.empty()) {  // paper: until sum_i s(.) = 0
         out.converged = true;
-        out.stopped_because = std::to_string(out.escaped) + " of " + std::to_string(views_.view.size()) +
-                              " views escaped from their minimum in the last multistart";
+        out.stopped_because = "no view escaped from its minimum in the last multistart";
         break;
       }
+      searched = unsettled(escaped);
     }
     if (progress_.cancelled()) out.stopped_because = "cancelled";
     finish();
@@ -70,9 +72,20 @@ class Growth {
   }
 
   // A new template: the losses under the old one are no measure.
-  PosedViews& forgotten() {
-    std::fill(state_.loss.begin(), state_.loss.end(), kUnknown);
+  PosedViews& forgotten(const std::vector<int>& which) {
+    for (const int i : which) state_.loss[static_cast<std::size_t>(i)] = kUnknown;
     return state_;
+  }
+
+  // What is searched again: views that escaped or do not make the template.
+  std::vector<int> unsettled(const std::vector<int>& escaped) const {
+    const std::vector<int> trusted = best_views(views_, state_.loss, kTrusted);
+    std::vector<int> out;
+    for (const int i : with_localisations(views_))
+      if (!std::binary_search(trusted.begin(), trusted.end(), i) ||
+          std::binary_search(escaped.begin(), escaped.end(), i))
+        out.push_back(i);
+    return out;
   }
 
   double trusted_loss() const {
@@ -95,7 +108,7 @@ class Growth {
       state_.view_from_template.assign(views_.view.size(), Pose());
       state_.loss.assign(views_.view.size(), kUnknown);
       fuse({view});
-      multistart_.improve(views_, points_, 0, false, state_);
+      multistart_.improve(views_, points_, 0, false, with_localisations(views_), state_);
       estimate_degradation(model_, points_, state_.view_from_template, options_, views_);
       tighten(kTrusted);
       const double loss = trusted_loss();

@@ -38,7 +38,9 @@ class Algorithm1 {
     while (out.loops < options_.most_loops && !progress_.cancelled()) {
       descend_jointly(model_, views_, options_, joint_steps(), progress_, state);
       if (out.loops == 0) adapt(state);
-      out.escaped = multistart_.improve(views_, decoded(state), out.loops + 1, false, state);
+      out.escaped = static_cast<int>(
+          multistart_.improve(views_, decoded(state), out.loops + 1, false, with_localisations(views_), state)
+              .size());
       if (progress_.cancelled()) break;
       progress_.step("latent", ++out.loops, options_.most_loops);
       if (out.escaped == 0) {  // paper: until sum_i s(.) = 0

@@ -13,9 +13,8 @@ constexpr std::size_t kMostCompared = 512;  // views, taken evenly: the comparis
 }
 
 std::vector<int> medoids(const LatentViews& views, int most) {
-  std::vector<int> all, some;
-  for (std::size_t i = 0; i < views.view.size(); ++i)
-    if (!views.view[i].empty()) all.push_back(static_cast<int>(i));
+  const std::vector<int> all = with_localisations(views);
+  std::vector<int> some;
   const std::size_t n = std::min(all.size(), kMostCompared);
   for (std::size_t k = 0; k < n; ++k) some.push_back(all[k * all.size() / n]);
   const auto distance = [&](std::size_t a, std::size_t b) {

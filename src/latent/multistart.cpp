@@ -54,18 +54,22 @@ std::vector<DescendedPose> Multistart::descended(const LatentView& view, const E
   return found;
 }
 
-int Multistart::improve(const LatentViews& views, const Eigen::Matrix3Xf& points, int round, bool present_too,
-                        PosedViews& state) {
+std::vector<int> Multistart::improve(const LatentViews& views, const Eigen::Matrix3Xf& points, int round,
+                                     bool present_too, const std::vector<int>& which, PosedViews& state) {
   const auto candidates = minima(views, points, state, round, options_.basins);
-  std::vector<char> escaped(views.view.size(), 0);
-  parallel_for(views.view.size(), [&](std::size_t i) {
-    if (views.view[i].empty() || progress_.cancelled()) return;
+  std::vector<char> moved(which.size(), 0);
+  parallel_for(which.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(which[k]);
+    if (progress_.cancelled()) return;
     std::vector<Pose> starts;
     for (const Minimum& m : candidates[i]) starts.push_back(m.view_from_template);
     if (present_too) starts.push_back(state.view_from_template[i]);
-    escaped[i] = update(i, descended(views.view[i], points, std::move(starts)), state) ? 1 : 0;
+    moved[k] = update(i, descended(views.view[i], points, std::move(starts)), state) ? 1 : 0;
   });
-  return static_cast<int>(std::count(escaped.begin(), escaped.end(), 1));
+  std::vector<int> escaped;
+  for (std::size_t k = 0; k < which.size(); ++k)
+    if (moved[k]) escaped.push_back(which[k]);
+  return escaped;
 }
 
 bool Multistart::update(std::size_t i, const std::vector<DescendedPose>& found, PosedViews& state) {

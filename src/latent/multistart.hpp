@@ -19,10 +19,10 @@ class Multistart {
   std::vector<std::vector<Minimum>> minima(const LatentViews& views, const Eigen::Matrix3Xf& points,
                                            const PosedViews& state, int round, int most) const;
 
-  /// Descends from the best minima (and, where the template is new to them, the present poses) and takes what
-  /// is better. Returns how many views escaped.
-  int improve(const LatentViews& views, const Eigen::Matrix3Xf& points, int round, bool present_too,
-              PosedViews& state);
+  /// Descends from the best minima of the views `which` (and, where the template is new to them, the present
+  /// poses) and takes what is better. Returns the views that escaped.
+  std::vector<int> improve(const LatentViews& views, const Eigen::Matrix3Xf& points, int round,
+                           bool present_too, const std::vector<int>& which, PosedViews& state);
 
   /// For each view the best pose found at least T_R away from its own; loss -1: there is none.
   const std::vector<DescendedPose>& second() const { return second_; }

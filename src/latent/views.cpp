@@ -65,6 +65,13 @@ double common_scale(const Views& views, double outlier_fraction) {
 
 }  // namespace
 
+std::vector<int> with_localisations(const LatentViews& views) {
+  std::vector<int> out;
+  for (std::size_t i = 0; i < views.view.size(); ++i)
+    if (!views.view[i].empty()) out.push_back(static_cast<int>(i));
+  return out;
+}
+
 void set_degradation(LatentView& view, std::uint64_t number, int decoded_points, double visibility,
                      double outlier_fraction, const LatentOptions& options) {
   view.visibility = visibility;

@@ -120,17 +120,31 @@ Parts polyhedron(KeyedRandom& random) {
   return rods;
 }
 
-Parts structure(KeyedRandom& random) {
-  const double kind = random.uniform();
-  if (kind < 0.35) return union_of(random, 1, 7);
-  if (kind < 0.65) {
+/// Sites on a flat rectangular grid, a random part of them occupied, as patterns on DNA origami are.
+Parts flat_grid(KeyedRandom& random) {
+  const int columns = count(random, 3, 12), rows = count(random, 2, 8);
+  const double spacing = between(random, 0.5, 1.5), occupied = between(random, 0.3, 1);
+  std::vector<Vector3d> sites = {Vector3d::Zero()};
+  for (int x = 0; x < columns; ++x)
+    for (int y = 0; y < rows; ++y)
+      if (random.uniform() < occupied) sites.emplace_back(x, spacing * y, 0);
+  return {site_clusters(std::move(sites), between(random, 0.01, 0.2))};
+}
+
+Parts structure(const TrainData& data, KeyedRandom& random) {
+  const double kind = random.uniform(), solids = 1 - data.sites_share;
+  if (kind >= solids) {
+    if (data.grid_share > 0 && random.uniform() < data.grid_share) return flat_grid(random);
+    return kind < solids + data.sites_share / 2 ? rings_of_sites(random) : polyhedron(random);
+  }
+  const double solid = kind / solids;
+  if (solid < 0.4375) return union_of(random, 1, 7);
+  if (solid < 0.8125) {
     Parts parts = mirrored(union_of(random, 1, 4));
     if (random.uniform() < 0.5) parts.push_back(placed(random, 0.0));
     return parts;
   }
-  if (kind < 0.80) return n_fold(union_of(random, 1, 2), count(random, 2, 12), between(random, 0.1, 1.5));
-  if (kind < 0.90) return rings_of_sites(random);
-  return polyhedron(random);
+  return n_fold(union_of(random, 1, 2), count(random, 2, 12), between(random, 0.1, 1.5));
 }
 }  // namespace
 
@@ -141,8 +155,8 @@ void centre_and_normalise(Eigen::Matrix3Xf& cloud) {
   if (radius > 0) cloud /= radius;
 }
 
-Eigen::Matrix3Xf procedural_cloud(int points, KeyedRandom& random) {
-  const Parts parts = structure(random);
+Eigen::Matrix3Xf procedural_cloud(int points, KeyedRandom& random, const TrainData& data) {
+  const Parts parts = structure(data, random);
   std::vector<double> cumulative;
   double total = 0;
   for (const Part& part : parts) cumulative.push_back(total += part.weight);

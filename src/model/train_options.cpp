@@ -12,6 +12,8 @@ std::vector<std::string> violations(const TrainOptions& o) {
   };
   share(o.data.procedural_share, "data.procedural_share");
   share(o.data.stretch_share, "data.stretch_share");
+  share(o.data.sites_share, "data.sites_share");
+  share(o.data.grid_share, "data.grid_share");
   const Degradation& d = o.degradation;
   share(d.full_share, "degradation.full_share");
   share(d.clean_share, "degradation.clean_share");
@@ -21,6 +23,9 @@ std::vector<std::string> violations(const TrainOptions& o) {
   share(d.cut_share, "degradation.cut_share");
   share(d.recentre_share, "degradation.recentre_share");
   share(d.rescale_share, "degradation.rescale_share");
+  share(d.few_labels_share, "degradation.few_labels_share");
+  need(d.min_labels >= 1 && d.min_labels <= d.max_labels && d.max_labels <= 1024,
+       "degradation.min_labels must be at least 1 and at most degradation.max_labels, which is at most 1024");
   need(d.min_points >= 1 && d.min_points <= d.max_points,
        "degradation.min_points must be at least 1 and at most degradation.max_points");
   need(d.max_points <= 1024, "degradation.max_points must be at most 1024, the size of a clean cloud");

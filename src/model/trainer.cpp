@@ -8,6 +8,7 @@
 #include "model/network_step.hpp"
 #include "model/optimiser.hpp"
 #include "model/train_state.hpp"
+#include "model/warm_start.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/model/shapes.hpp"
 #include "polar/model/weights_file.hpp"
@@ -17,6 +18,8 @@ namespace polar {
 
 namespace {
 constexpr int kCleanPoints = 1024;
+constexpr std::size_t kStatisticsClouds = 512;         // the decoder's norms have one value a cloud
+constexpr std::uint64_t kStatisticsItem = 1ull << 62;  // of clouds that no step sees
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
@@ -40,13 +43,25 @@ std::string about(const TrainOptions& options, const TrainState& state) {
                 options.clouds_per_step, state.curve_loss.empty() ? NAN : state.curve_loss.back());
   return text;
 }
+
+/// Random weights, or those of options.initial_weights with the statistics of clouds like those to come.
+TrainState first_state(const TrainOptions& options, const ShapeSet& shapes) {
+  TrainState state = initial_state(options);
+  if (options.initial_weights.empty()) return state;
+  std::vector<TrainingCloud> batch(kStatisticsClouds);
+  parallel_for(batch.size(), [&](std::size_t i) {
+    batch[i] = training_cloud(options.seed, kStatisticsItem + i, options.data, shapes, options.degradation);
+  });
+  start_from(read_weights(options.initial_weights).weights, batch, state);
+  return state;
+}
 }  // namespace
 
 TrainReport train(const TrainOptions& options, Progress& progress) {
   smlm::throw_if_any(violations(options), smlm::Fault::usage, "training options");
   const ShapeSet shapes = read_shapes(options.data.shapes, kCleanPoints);
   const bool resume = !options.checkpoint.empty() && std::ifstream(options.checkpoint).good();
-  TrainState state = resume ? read_checkpoint(options.checkpoint, options) : initial_state(options);
+  TrainState state = resume ? read_checkpoint(options.checkpoint, options) : first_state(options, shapes);
   if (resume) progress.note("going on from step " + std::to_string(state.step) + " of " + options.checkpoint);
 
   const auto clouds = static_cast<std::size_t>(options.clouds_per_step);

@@ -23,7 +23,7 @@ double log_between(KeyedRandom& r, double low, double high) {
 
 Eigen::Matrix3Xf clean_cloud(const TrainData& data, const ShapeSet& shapes, KeyedRandom& random) {
   const std::uint64_t n = shapes.size();
-  if (n == 0 || random.uniform() < data.procedural_share) return procedural_cloud(kCleanPoints, random);
+  if (n == 0 || random.uniform() < data.procedural_share) return procedural_cloud(kCleanPoints, random, data);
   const std::uint64_t index = random.below(n);
   Eigen::Matrix3Xf cloud = shapes.sample(index, kCleanPoints, random);
   if (random.uniform() < data.stretch_share) {
@@ -67,6 +67,14 @@ std::vector<Eigen::Index> surviving(const Eigen::Matrix3Xf& cloud, const Degrada
   return order;
 }
 
+/// Every point becomes one of the first few: labels that are missing, and others that blink many times.
+void repeat_few_labels(std::vector<Eigen::Index>& points, const Degradation& d, KeyedRandom& random) {
+  if (d.few_labels_share == 0 || random.uniform() >= d.few_labels_share) return;
+  const auto labels = static_cast<std::uint64_t>(log_between(random, d.min_labels, d.max_labels));
+  const std::uint64_t distinct = std::min<std::uint64_t>(labels, points.size());
+  for (std::size_t i = distinct; i < points.size(); ++i) points[i] = points[random.below(distinct)];
+}
+
 void add_noise(Eigen::Matrix3Xf& cloud, const Degradation& d, KeyedRandom& random) {
   if (random.uniform() < d.clean_share) return;
   const double sigma = log_between(random, kMinSigma, d.max_sigma);
@@ -83,7 +91,8 @@ void add_noise(Eigen::Matrix3Xf& cloud, const Degradation& d, KeyedRandom& rando
 }  // namespace
 
 Eigen::Matrix3Xf degrade(const Degradation& d, KeyedRandom& random, Eigen::Matrix3Xf& target) {
-  const std::vector<Eigen::Index> kept = surviving(target, d, random);
+  std::vector<Eigen::Index> kept = surviving(target, d, random);
+  repeat_few_labels(kept, d, random);
   Eigen::Matrix3Xf input(3, static_cast<Eigen::Index>(kept.size()));
   for (std::size_t i = 0; i < kept.size(); ++i) input.col(static_cast<Eigen::Index>(i)) = target.col(kept[i]);
   add_noise(input, d, random);

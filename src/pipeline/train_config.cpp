@@ -13,6 +13,8 @@ void fields(Visitor& v, TrainOptions& o) {
     s.field("shapes", o.data.shapes);
     s.field("procedural_share", o.data.procedural_share);
     s.field("stretch_share", o.data.stretch_share);
+    s.field("sites_share", o.data.sites_share);
+    s.field("grid_share", o.data.grid_share);
   });
   v.section("degradation", [&](auto& s) {
     Degradation& d = o.degradation;
@@ -28,6 +30,9 @@ void fields(Visitor& v, TrainOptions& o) {
     s.field("min_visibility", d.min_visibility);
     s.field("recentre_share", d.recentre_share);
     s.field("rescale_share", d.rescale_share);
+    s.field("few_labels_share", d.few_labels_share);
+    s.field("min_labels", d.min_labels);
+    s.field("max_labels", d.max_labels);
   });
   v.section("training", [&](auto& s) {
     s.field("seed", o.seed);
@@ -40,6 +45,7 @@ void fields(Visitor& v, TrainOptions& o) {
     s.field("weight_decay", o.weight_decay);
     s.field("dropout", o.dropout);
     s.field("batch_norm_momentum", o.batch_norm_momentum);
+    s.field("initial_weights", o.initial_weights);
   });
   v.section("output", [&](auto& s) {
     s.field("weights", o.weights);
@@ -63,6 +69,8 @@ TrainOptions load_train_options(const std::string& path, const std::vector<std::
   options.data.shapes = pipeline::expand_files(options.data.shapes, folder);
   options.score_shapes = pipeline::expand_files(options.score_shapes, folder);
   options.weights = pipeline::resolve_path(options.weights, folder);
+  if (!options.initial_weights.empty())
+    options.initial_weights = pipeline::resolve_path(options.initial_weights, folder);
   if (!options.checkpoint.empty()) options.checkpoint = pipeline::resolve_path(options.checkpoint, folder);
   return options;
 }

@@ -38,6 +38,9 @@ struct LatentViews {
 /// Samples localisations, draws noise and encodes every view. All draws are keyed by (seed, view).
 LatentViews latent_views(const Views& views, const Autoencoder& model, const LatentOptions& options);
 
+/// The views that are not empty.
+std::vector<int> with_localisations(const LatentViews& views);
+
 /// Sets both ratios of view `number` and makes its draws: with matched counts as many as leave equal clouds
 /// behind both masks, else one of every decoded point.
 void set_degradation(LatentView& view, std::uint64_t number, int decoded_points, double visibility,

@@ -12,6 +12,8 @@ struct TrainData {
   std::vector<std::string> shapes;  // HDF5 files: `points` (shape, point, 3) times attribute `scale`
   double procedural_share = 0.5;    // share of clouds from the procedural generator; 1 where no file is given
   double stretch_share = 0.5;       // share of file shapes that are stretched by up to 1.6 along random axes
+  double sites_share = 0.2;  // share of procedural clouds that are sites of labels: rings and polyhedra ...
+  double grid_share = 0;     // ... or, this share of them, flat grids as of DNA origami
 };
 
 /// How a clean cloud is spoilt before the encoder sees it; lengths in units of the clean cloud's largest
@@ -30,6 +32,9 @@ struct Degradation {
   double min_visibility = 0.7;   // ... that leaves v ~ U(min_visibility, 1) of the points
   double recentre_share = 0.5;   // share of clouds that are centred again after all this
   double rescale_share = 0.4;    // share of clouds scaled by U(0.7, 1)
+  double few_labels_share = 0;   // share of clouds whose points repeat few labels, as blinking does ...
+  int min_labels = 8;            // ... their number log-uniform between min and max
+  int max_labels = 200;
 };
 
 struct TrainOptions {
@@ -45,6 +50,7 @@ struct TrainOptions {
   double weight_decay = 1e-2;       // AdamW's, on weight matrices only
   double dropout = 0.1;             // in the decoder
   double batch_norm_momentum = 0.02;
+  std::string initial_weights;  // weights file to start from; empty: random ones
   int report_every_steps = 100;
   int checkpoint_every_steps = 500;
   std::string checkpoint;                 // file that an interrupted training goes on from; empty: none

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -9,7 +11,9 @@
 #include <set>
 #include <thread>
 
+#include "model/network_step.hpp"
 #include "model/training_cloud.hpp"
+#include "model/warm_start.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/model/chamfer.hpp"
 #include "polar/model/score.hpp"
@@ -142,6 +146,41 @@ TEST_F(TrainerTest, learnsToRestoreCloudsItNeverSaw) {
   EXPECT_NEAR(restored, report.loss.back(), 0.15 * report.loss.back());
 }
 
+TEST_F(TrainerTest, startsFromFinishedWeights) {
+  options_.steps = 60;
+  options_.clouds_per_step = 16;
+  options_.warmup_steps = 5;
+  options_.batch_norm_momentum = 0.1;
+  const TrainReport first = train(options_, quiet_);
+  const PointNetWeights finished = read_weights(options_.weights).weights;
+  std::vector<TrainingCloud> batch;
+  for (std::uint64_t i = 0; i < 256; ++i)
+    batch.push_back(training_cloud(5, i, options_.data, {}, options_.degradation));
+  TrainState state = initial_state(options_);
+  start_from(finished, batch, state);
+  // The same function at inference, and with the norms of the batch.
+  const PointNetWeights again = folded(state.parameters, state.moments);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_TRUE(again.encoder[i].weight.isApprox(finished.encoder[i].weight, 1e-5f)) << i;
+    EXPECT_TRUE(again.encoder[i].bias.isApprox(finished.encoder[i].bias, 1e-4f)) << i;
+    EXPECT_TRUE(again.decoder[i].weight.isApprox(finished.decoder[i].weight, 1e-5f)) << i;
+    EXPECT_TRUE(again.decoder[i].bias.isApprox(finished.decoder[i].bias, 1e-4f)) << i;
+  }
+  const auto model = make_pointnet(finished);
+  double inference = 0;
+  for (const TrainingCloud& cloud : batch)
+    inference += chamfer(model->decode(model->encode(cloud.input).latent), cloud.target).sum() /
+                 static_cast<double>(batch.size());
+  std::vector<float> gradient;
+  EXPECT_NEAR(NetworkStep().loss(state.parameters, batch, {}, gradient), inference, 0.01 * inference);
+  // And a training that starts there is where the first one ended, not where it began.
+  options_.initial_weights = options_.weights;
+  options_.weights = (folder_ / "finer.h5").string();
+  options_.steps = 2;
+  options_.learning_rate = 1e-5;
+  EXPECT_LT(train(options_, quiet_).loss.front(), 0.5 * (first.loss.front() + first.loss.back()));
+}
+
 TEST_F(TrainerTest, namesEveryFaultOfItsOptions) {
   options_.steps = 0;
   options_.degradation.min_visibility = 1.5;
@@ -150,6 +189,20 @@ TEST_F(TrainerTest, namesEveryFaultOfItsOptions) {
   EXPECT_THROW(train(options_, quiet_), smlm::Error);
   options_.degradation.max_sigma = std::nan("");
   EXPECT_EQ(violations(options_).size(), 4u);
+}
+
+TEST(TrainingCloud, gridsOfSitesAreFlat) {
+  TrainData data;
+  data.sites_share = data.grid_share = 1;
+  Degradation clean;
+  clean.clean_share = 1;
+  for (std::uint64_t item = 0; item < 50; ++item) {
+    const Eigen::Matrix3Xf cloud = training_cloud(1, item, data, {}, clean).target;
+    const Eigen::Matrix3Xf centred = cloud.colwise() - cloud.rowwise().mean();
+    const Eigen::Vector3f spread =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(centred * centred.transpose()).eigenvalues();
+    ASSERT_LT(std::sqrt(spread[0]), 0.5 * std::sqrt(spread[2])) << item;
+  }
 }
 
 TEST(TrainingCloud, keepsItsPromises) {
@@ -170,6 +223,16 @@ TEST(TrainingCloud, keepsItsPromises) {
   }
   EXPECT_LT(smallest, 60);
   EXPECT_GT(cut, 30);
+  Degradation blinking = d;
+  blinking.few_labels_share = 1, blinking.clean_share = 1, blinking.max_labels = 30;
+  for (std::uint64_t item = 0; item < 50; ++item) {
+    const TrainingCloud cloud = training_cloud(1, item, {}, {}, blinking);
+    std::set<std::array<float, 3>> labels;
+    for (const auto& p : cloud.input.colwise()) labels.insert({p.x(), p.y(), p.z()});
+    ASSERT_LE(labels.size(), 30u);
+    ASSERT_GE(labels.size(), 8u);
+    ASSERT_GE(cloud.input.cols(), d.min_points);
+  }
   const TrainingCloud once = training_cloud(1, 5, {}, {}, d), again = training_cloud(1, 5, {}, {}, d);
   EXPECT_EQ(once.input, again.input);
   EXPECT_NE(training_cloud(1, 6, {}, {}, d).target, once.target);
