@@ -1,5 +1,7 @@
 #include "table_builder.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -143,7 +145,24 @@ std::int64_t TableBuilder::particle_of(const RowBlock& block, std::size_t row) {
   return word == plan_.unassigned_particle ? -1 : particles_.of_text(word);
 }
 
+void TableBuilder::require_memory_for(std::uint64_t rows) const {
+  constexpr double gibibyte = 1024.0 * 1024 * 1024;
+  constexpr std::size_t fixed_bytes = sizeof(std::array<double, 3>) + sizeof(Covariance) +
+                                      sizeof(std::int64_t) + sizeof(std::uint32_t) + sizeof(std::uint64_t);
+  const double needed = static_cast<double>(rows) *
+                        static_cast<double>(fixed_bytes + plan_.extra.size() * sizeof(double)) / gibibyte;
+  const double installed =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE)) / gibibyte;
+  if (needed < installed) return;
+  throw Error(Fault::resource, where_,
+              "holds " + std::to_string(rows) + " rows or more, which need " +
+                  std::to_string(std::llround(std::ceil(needed))) + " GiB of memory; this machine has " +
+                  std::to_string(std::llround(installed)) + " GiB",
+              "split the table, or use a machine with more memory");
+}
+
 void TableBuilder::append(const RowBlock& block) {
+  require_memory_for(table_.size() + block.row.size());
   for (std::size_t row = 0; row < block.row.size(); ++row) {
     std::array<double, 3> position{};
     Covariance covariance{};

@@ -30,6 +30,8 @@ class TableBuilder {
 
   /// The number that stands for a word in a column of text.
   double label(std::size_t column, std::string_view word);
+  /// Error(resource) where the table would not fit into the machine's memory with this many rows.
+  void require_memory_for(std::uint64_t rows) const;
   /// Appends the rows that can be used. A row that cannot is an Error(input) naming file, row and column, or
   /// a counted rejection where options.drop_nonfinite asks for it.
   void append(const RowBlock& block);

@@ -41,6 +41,7 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       block.columns[i] = file.read_member<double>(locs, columns[i].name, first, rows);
     }
+    if (first == 0) builder.require_memory_for(info.shape[0]);  // a claim that reading has found credible
     block.row.resize(rows);
     for (std::uint64_t row = 0; row < rows; ++row) block.row[row] = first + row + 1;
     builder.append(block);

@@ -1,4 +1,9 @@
 #include <gmock/gmock.h>
+#include <hdf5.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <array>
 
 #include "fixture.hpp"
 #include "smlm/h5/file.hpp"
@@ -107,6 +112,38 @@ TEST_F(PicassoReader, RealFiles) {
   EXPECT_EQ(read_table(picked, {}).particle_names.size(), 9u);
   SMLM_SHARED_FILE(fits, "formats/picasso_testdata_locs.hdf5");
   EXPECT_TRUE(read_table(fits, {}).planar);
+}
+
+// Row numbers are 64-bit, and a table that no memory holds is refused by its count, before it is read.
+TEST_F(PicassoReader, MoreRowsThan32BitsCountAreRefusedByMemory) {
+  constexpr std::uint64_t chunk_rows = 1 << 20, rows = (std::uint64_t{1} << 31) + chunk_rows;
+  if (static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE)) > 140e9)
+    GTEST_SKIP() << "this machine would hold the table";
+  const std::vector<std::array<float, 4>> chunk(chunk_rows, {1, 2, 0.1f, 0.1f});
+  uLongf packed_bytes = compressBound(sizeof(chunk[0]) * chunk_rows);
+  std::vector<Bytef> packed(packed_bytes);
+  ASSERT_EQ(compress2(packed.data(), &packed_bytes, reinterpret_cast<const Bytef*>(chunk.data()),
+                      sizeof(chunk[0]) * chunk_rows, 9),
+            Z_OK);
+  const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof(chunk[0]));
+  std::size_t offset = 0;
+  for (const char* name : {"x", "y", "lpx", "lpy"}) {
+    H5Tinsert(type, name, offset, H5T_IEEE_F32LE);
+    offset += sizeof(float);
+  }
+  const hsize_t size[] = {rows}, chunk_size[] = {chunk_rows};
+  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE), space = H5Screate_simple(1, size, nullptr);
+  H5Pset_chunk(properties, 1, chunk_size);
+  H5Pset_deflate(properties, 9);
+  const hid_t file = H5Fcreate(path("large.hdf5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t table = H5Dcreate2(file, "/locs", type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  for (hsize_t first = 0; first < rows; first += chunk_rows)
+    ASSERT_GE(H5Dwrite_chunk(table, H5P_DEFAULT, 0, &first, packed_bytes, packed.data()), 0);
+  H5Dclose(table), H5Fclose(file), H5Pclose(properties), H5Sclose(space), H5Tclose(type);
+  write("large.yaml", "Pixelsize: 100\n");
+  const Error error = test::error_of([&] { read_table(path("large.hdf5"), {}); });
+  EXPECT_EQ(error.fault(), Fault::resource);
+  EXPECT_THAT(error.what(), HasSubstr("holds 2148532224 rows or more, which need"));
 }
 
 }  // namespace
