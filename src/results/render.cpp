@@ -36,7 +36,17 @@ double median_sigma_nm(const smlm::LocalisationTable& table) {
   return quantile(std::move(smallest), 0.5);
 }
 
-Gaussian gaussian(const smlm::LocalisationTable& table, std::size_t row) {
+// `m` with no standard deviation below `least_nm`. In the table's floats the covariance of a localisation
+// that is a million times finer along one axis than along another may not even be positive definite.
+Eigen::Matrix3d widened(const Eigen::Matrix3d& m, double least_nm) {
+  const Eigen::Matrix3d rest = m - least_nm * least_nm * Eigen::Matrix3d::Identity();
+  if (rest.llt().info() == Eigen::Success) return m;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(m);
+  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(least_nm * least_nm).asDiagonal() *
+         axes.eigenvectors().transpose();
+}
+
+Gaussian gaussian(const smlm::LocalisationTable& table, std::size_t row, double voxel_nm) {
   const auto& x = table.position_nm[row];
   const smlm::Covariance& c = table.covariance_nm2[row];
   Eigen::Matrix3d m;
@@ -49,8 +59,10 @@ Gaussian gaussian(const smlm::LocalisationTable& table, std::size_t row) {
     dimensions = 2;
     m.row(2).setZero();
     m.col(2).setZero();
-    m(2, 2) = 1;
+    m(2, 2) = voxel_nm * voxel_nm;
   }
+  m = widened(m, voxel_nm / 2);  // finer than that, what the voxels hold would depend on where it falls
+  if (table.planar) m(2, 2) = 1;
   Gaussian g;
   g.mean_nm = {x[0], x[1], table.planar ? 0.0 : x[2]};
   g.reach_nm = kReach * m.diagonal().cwiseSqrt();
@@ -157,7 +169,7 @@ void add(Volume& v, const Gaussian& g, std::size_t z_begin, std::size_t z_end) {
 Volume drawn(Volume v, const smlm::LocalisationTable& table) {
   v.density.assign(v.size[0] * v.size[1] * v.size[2], 0.0f);
   std::vector<Gaussian> gaussians(table.size());
-  parallel_for(table.size(), [&](std::size_t i) { gaussians[i] = gaussian(table, i); });
+  parallel_for(table.size(), [&](std::size_t i) { gaussians[i] = gaussian(table, i, v.voxel_nm); });
   // Every block owns its slices and adds the localisations in their order.
   parallel_blocks(v.size[2], kSlabDepth, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (const Gaussian& g : gaussians) add(v, g, begin, end);
