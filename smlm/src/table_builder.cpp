@@ -15,6 +15,11 @@ constexpr double largest_nm = 1e9;
 constexpr double smallest_sigma_nm = 1e-9;
 // What the field's programs assume where the axial precision is not known (Picasso, napari-storm).
 constexpr double axial_over_lateral = 2.0;
+constexpr double gibibyte = 1024.0 * 1024 * 1024;
+
+double installed_gibibytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE)) / gibibyte;
+}
 
 }  // namespace
 
@@ -146,13 +151,11 @@ std::int64_t TableBuilder::particle_of(const RowBlock& block, std::size_t row) {
 }
 
 void TableBuilder::require_memory_for(std::uint64_t rows) const {
-  constexpr double gibibyte = 1024.0 * 1024 * 1024;
+  static const double installed = installed_gibibytes();
   constexpr std::size_t fixed_bytes = sizeof(std::array<double, 3>) + sizeof(Covariance) +
                                       sizeof(std::int64_t) + sizeof(std::uint32_t) + sizeof(std::uint64_t);
   const double needed = static_cast<double>(rows) *
                         static_cast<double>(fixed_bytes + plan_.extra.size() * sizeof(double)) / gibibyte;
-  const double installed =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE)) / gibibyte;
   if (needed < installed) return;
   throw Error(Fault::resource, where_,
               "holds " + std::to_string(rows) + " rows or more, which need " +

@@ -38,12 +38,12 @@ class Algorithm1 {
     while (out.loops < options_.most_loops && !progress_.cancelled()) {
       descend_jointly(model_, views_, options_, joint_steps(), progress_, state);
       if (out.loops == 0) adapt(state);
-      out.escaped = static_cast<int>(
-          multistart_.improve(views_, decoded(state), out.loops + 1, false, with_localisations(views_), state)
-              .size());
+      const std::vector<int> escaped = multistart_.improve(views_, decoded(state), out.loops + 1, false,
+                                                           with_localisations(views_), state);
+      out.escaped = static_cast<int>(escaped.size());
       if (progress_.cancelled()) break;
       progress_.step("latent", ++out.loops, options_.most_loops);
-      if (out.escaped == 0) {  // paper: until sum_i s(.) = 0
+      if (escaped.empty()) {  // paper: until sum_i s(.) = 0
         out.converged = true;
         out.stopped_because = "no view escaped from its minimum in the last multistart";
         break;

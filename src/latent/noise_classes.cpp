@@ -90,13 +90,9 @@ void draw_class(const LatentViews& views, NoiseClass& c) {
 }  // namespace
 
 std::vector<NoiseClass> noise_classes(const LatentViews& views, const LatentOptions& options) {
+  const std::vector<int> owner = with_localisations(views);
   std::vector<Feature> features;
-  std::vector<int> owner;
-  for (std::size_t i = 0; i < views.view.size(); ++i)
-    if (!views.view[i].empty()) {
-      features.push_back(feature_of(views.view[i]));
-      owner.push_back(static_cast<int>(i));
-    }
+  for (const int i : owner) features.push_back(feature_of(views.view[static_cast<std::size_t>(i)]));
   if (features.empty()) return {};
   const std::vector<Feature> centre =
       centres_of(features, options.search == "exhaustive" ? kExhaustiveClasses : kFastClasses);

@@ -134,6 +134,7 @@ Parts flat_grid(KeyedRandom& random) {
 Parts structure(const TrainData& data, KeyedRandom& random) {
   const double kind = random.uniform(), solids = 1 - data.sites_share;
   if (kind >= solids) {
+    // Without grids nothing is drawn for them, so that older trainings repeat to the bit.
     if (data.grid_share > 0 && random.uniform() < data.grid_share) return flat_grid(random);
     return kind < solids + data.sites_share / 2 ? rings_of_sites(random) : polyhedron(random);
   }

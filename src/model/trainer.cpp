@@ -44,14 +44,20 @@ std::string about(const TrainOptions& options, const TrainState& state) {
   return text;
 }
 
+/// Examples number `first_item` and those after it, as many as `batch` holds.
+void draw(const TrainOptions& options, const ShapeSet& shapes, std::uint64_t first_item,
+          std::vector<TrainingCloud>& batch) {
+  parallel_for(batch.size(), [&](std::size_t i) {
+    batch[i] = training_cloud(options.seed, first_item + i, options.data, shapes, options.degradation);
+  });
+}
+
 /// Random weights, or those of options.initial_weights with the statistics of clouds like those to come.
 TrainState first_state(const TrainOptions& options, const ShapeSet& shapes) {
   TrainState state = initial_state(options);
   if (options.initial_weights.empty()) return state;
   std::vector<TrainingCloud> batch(kStatisticsClouds);
-  parallel_for(batch.size(), [&](std::size_t i) {
-    batch[i] = training_cloud(options.seed, kStatisticsItem + i, options.data, shapes, options.degradation);
-  });
+  draw(options, shapes, kStatisticsItem, batch);
   start_from(read_weights(options.initial_weights).weights, batch, state);
   return state;
 }
@@ -78,9 +84,7 @@ TrainReport train(const TrainOptions& options, Progress& progress) {
   Clock::time_point report_time = start;
   while (state.step < options.steps && !progress.cancelled()) {
     const std::uint64_t item = static_cast<std::uint64_t>(state.step) * clouds;
-    parallel_for(clouds, [&](std::size_t i) {
-      batch[i] = training_cloud(options.seed, item + i, options.data, shapes, options.degradation);
-    });
+    draw(options, shapes, item, batch);
     const double loss =
         network.loss(state.parameters, batch, {options.seed, item, options.dropout}, gradient);
     if (!std::isfinite(loss))

@@ -69,6 +69,7 @@ std::vector<Eigen::Index> surviving(const Eigen::Matrix3Xf& cloud, const Degrada
 
 /// Every point becomes one of the first few: labels that are missing, and others that blink many times.
 void repeat_few_labels(std::vector<Eigen::Index>& points, const Degradation& d, KeyedRandom& random) {
+  // At 0 nothing is drawn, so that older trainings repeat to the bit.
   if (d.few_labels_share == 0 || random.uniform() >= d.few_labels_share) return;
   const auto labels = static_cast<std::uint64_t>(log_between(random, d.min_labels, d.max_labels));
   const std::uint64_t distinct = std::min<std::uint64_t>(labels, points.size());

@@ -36,12 +36,14 @@ double median_sigma_nm(const smlm::LocalisationTable& table) {
   return quantile(std::move(smallest), 0.5);
 }
 
-// `m` with no standard deviation below `least_nm`. In the table's floats the covariance of a localisation
-// that is a million times finer along one axis than along another may not even be positive definite.
-Eigen::Matrix3d widened(const Eigen::Matrix3d& m, double least_nm) {
-  const Eigen::Matrix3d rest = m - least_nm * least_nm * Eigen::Matrix3d::Identity();
+// Covariance `m` (2 x 2 or 3 x 3) with no standard deviation below `least_nm`. In the table's floats the
+// covariance of a localisation that is a million times finer along one axis than along another may not even
+// be positive definite.
+template <class Matrix>
+Matrix widened(const Matrix& m, double least_nm) {
+  const Matrix rest = m - least_nm * least_nm * Matrix::Identity();
   if (rest.llt().info() == Eigen::Success) return m;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(m);
+  const Eigen::SelfAdjointEigenSolver<Matrix> axes(m);
   return axes.eigenvectors() * axes.eigenvalues().cwiseMax(least_nm * least_nm).asDiagonal() *
          axes.eigenvectors().transpose();
 }
@@ -54,15 +56,16 @@ Gaussian gaussian(const smlm::LocalisationTable& table, std::size_t row, double 
       double(c[4]), double(c[5]);
   for (int axis = 0; axis < 3; ++axis)
     if (!(m(axis, axis) > 0)) m(axis, axis) = double(kFallbackVariance_nm2);
+  const double least_nm = voxel_nm / 2;  // finer, and what the voxels hold would depend on where it falls
   double dimensions = 3;
   if (table.planar) {  // the slice's own thickness does not count
     dimensions = 2;
-    m.row(2).setZero();
-    m.col(2).setZero();
-    m(2, 2) = voxel_nm * voxel_nm;
+    const Eigen::Matrix2d across = widened<Eigen::Matrix2d>(m.topLeftCorner<2, 2>(), least_nm);
+    m.setIdentity();
+    m.topLeftCorner<2, 2>() = across;
+  } else {
+    m = widened(m, least_nm);
   }
-  m = widened(m, voxel_nm / 2);  // finer than that, what the voxels hold would depend on where it falls
-  if (table.planar) m(2, 2) = 1;
   Gaussian g;
   g.mean_nm = {x[0], x[1], table.planar ? 0.0 : x[2]};
   g.reach_nm = kReach * m.diagonal().cwiseSqrt();

@@ -252,9 +252,8 @@ int main(int argc, char** argv) {
     if (!faults.empty()) throw smlm::Error(smlm::Fault::usage, "--search", faults.front());
     if (!sample.empty()) {
       std::puts(
-          "| group | search | seed | recall 5 deg | recall 10 deg | recall 15 deg | median deg | winner | s "
-          "| "
-          "processor s | peak MiB |");
+          "| group | search | seed | recall 5 deg | recall 10 deg | recall 15 deg | median deg | winner "
+          "| s | processor s | peak MiB |");
       std::puts("|---|---|---|---|---|---|---|---|---|---|---|");
       for (const char* group : {"anisotropy", "cropped_noisy"})
         if (chosen(cases, group)) sample_case(sample, group, first_seed, seeds, most_views, options);
