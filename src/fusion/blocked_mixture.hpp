@@ -15,7 +15,7 @@ class BlockedMixture {
   explicit BlockedMixture(const Mixture& mixture);
 
   int blocks() const { return blocks_; }
-  int padded_size() const { return blocks_ * kernel::kLanes; }
+  int padded_size() const { return blocks_ * kernel::kBlock; }
   float background() const { return background_; }
   const float* weight() const { return weight_.data(); }
 

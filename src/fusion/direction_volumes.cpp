@@ -91,7 +91,7 @@ SearchView search_view(const View& view, const Eigen::Vector3f& axis, const Nois
                  out.part.end());
   for (SearchView::Part& part : out.part)
     for (auto* a : {&part.x, &part.y, &part.z})
-      a->resize((a->size() + kernel::kLanes - 1) / kernel::kLanes * kernel::kLanes, a->back());
+      a->resize((a->size() + kernel::kBlock - 1) / kernel::kBlock * kernel::kBlock, a->back());
   return out;
 }
 
@@ -119,7 +119,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
   origin_ = low - border;
   if (planar) origin_.z() = 0;
   const auto voxels = static_cast<std::size_t>(dim_[0] * dim_[1] * dim_[2]);
-  stride_ = (voxels + kernel::kLanes - 1) / kernel::kLanes * kernel::kLanes;
+  stride_ = (voxels + kernel::kBlock - 1) / kernel::kBlock * kernel::kBlock;
   value_.resize(stride_ * direction_.size() * classes.sigma.size());
 
   const auto background =
@@ -174,7 +174,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
 }
 
 std::vector<float> DirectionVolumes::empty_volume(float density, const BackgroundFactor& factor) const {
-  std::vector<float> out(stride_ + kernel::kLanes, density);  // add_gaussian_row touches a little more
+  std::vector<float> out(stride_ + kernel::kBlock, density);  // add_gaussian_row touches a little more
   if (!factor) return out;
   float* at = out.data();
   for (int z = 0; z < dim_[2]; ++z)

@@ -46,7 +46,7 @@ const float* view_weight(const FusionData& data, std::size_t view, const float* 
                          std::vector<float>& buffer) {
   const std::vector<float>& factor = data.visibility(view);
   if (factor.empty()) return nullptr;
-  buffer.resize((factor.size() + kernel::kLanes - 1) / kernel::kLanes * kernel::kLanes, 0.0f);
+  buffer.resize((factor.size() + kernel::kBlock - 1) / kernel::kBlock * kernel::kBlock, 0.0f);
   for (std::size_t k = 0; k < factor.size(); ++k) buffer[k] = weight[k] * factor[k];
   return buffer.data();
 }

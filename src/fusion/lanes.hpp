@@ -1,8 +1,9 @@
-// Vectors of 16 single-precision lanes and what the kernels do with them. Everything is in an unnamed
-// namespace, because every instruction set compiles a copy of its own (intrinsics are always inlined).
+// Vectors as wide as the registers and what the kernels do with them. Wider ones would be written the same,
+// but GCC takes their comparisons apart lane by lane. Everything is in an unnamed namespace, because every
+// instruction set compiles a copy of its own (intrinsics are always inlined).
 #pragma once
 
-#if defined(__AVX512F__)
+#if defined(__SSE2__)
 #include <immintrin.h>
 #endif
 
@@ -11,9 +12,18 @@
 namespace polar::kernel {
 namespace {
 
+#if defined(__AVX512F__)
+constexpr int kLanes = 16;
+#elif defined(__AVX2__)
+constexpr int kLanes = 8;
+#else
+constexpr int kLanes = 4;
+#endif
+static_assert(kBlock % kLanes == 0, "a block is a whole number of vectors");
+
 typedef float V __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
-typedef float V8 __attribute__((vector_size(2 * kLanes), aligned(4), may_alias));
-typedef float V4 __attribute__((vector_size(kLanes), aligned(4), may_alias));
+typedef float V8 __attribute__((vector_size(32), aligned(4), may_alias));
+typedef float V4 __attribute__((vector_size(16), aligned(4), may_alias));
 typedef int I __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
 typedef short S __attribute__((vector_size(2 * kLanes), aligned(2), may_alias));
 
@@ -55,18 +65,32 @@ inline V log_of(V x) {
   return 2.0f * s * p + __builtin_convertvector(e, V) * 0.69314718056f;
 }
 
+inline V4 halves(V4 v) { return v; }
+
+inline V4 halves(V8 v) {
+  return __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
+}
+
+#if defined(__AVX512F__)
+inline V4 halves(V v) {
+  return halves(__builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7) +
+                __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15));
+}
+#endif
+
 inline float sum(V v) {
-  const V8 a = __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7) +
-               __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
-  const V4 b = __builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7);
-  return (b[0] + b[2]) + (b[1] + b[3]);
+  const V4 a = halves(v);
+  return (a[0] + a[2]) + (a[1] + a[3]);
 }
 
 // One bit a lane of a comparison's result.
 inline unsigned bits_of(I mask) {
 #if defined(__AVX512F__)
-  return static_cast<unsigned>(
-      _mm512_test_epi32_mask(reinterpret_cast<const __m512i&>(mask), reinterpret_cast<const __m512i&>(mask)));
+  return _mm512_movepi32_mask(reinterpret_cast<const __m512i&>(mask));
+#elif defined(__AVX2__)
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(mask)));
+#elif defined(__SSE2__)
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<const __m128&>(mask)));
 #else
   unsigned bits = 0;
   for (int i = 0; i < kLanes; ++i) bits |= (static_cast<unsigned>(mask[i]) & 1u) << i;

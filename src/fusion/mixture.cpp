@@ -15,7 +15,7 @@ constexpr int kMaxBlocks = 4096;  // the kernels' list of blocks in reach
 
 // Halves [begin, end) along its widest axis at a multiple of 16 until one block is left.
 void split(const Eigen::Matrix3Xf& centre, std::vector<int>& order, int begin, int end) {
-  if (end - begin <= kernel::kLanes) return;
+  if (end - begin <= kernel::kBlock) return;
   Eigen::Vector3f low = centre.col(order[static_cast<std::size_t>(begin)]), high = low;
   for (int i = begin; i < end; ++i) {
     low = low.cwiseMin(centre.col(order[static_cast<std::size_t>(i)]));
@@ -23,8 +23,8 @@ void split(const Eigen::Matrix3Xf& centre, std::vector<int>& order, int begin, i
   }
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
-  const int blocks = (end - begin + kernel::kLanes - 1) / kernel::kLanes;
-  const int middle = begin + blocks / 2 * kernel::kLanes;
+  const int blocks = (end - begin + kernel::kBlock - 1) / kernel::kBlock;
+  const int middle = begin + blocks / 2 * kernel::kBlock;
   std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int a, int b) {
     return centre(axis, a) != centre(axis, b) ? centre(axis, a) < centre(axis, b) : a < b;
   });
@@ -57,24 +57,24 @@ void sort_into_blocks(Mixture& mixture) {
 }
 
 BlockedMixture::BlockedMixture(const Mixture& m)
-    : blocks_(static_cast<int>((m.size() + kernel::kLanes - 1) / kernel::kLanes)),
+    : blocks_(static_cast<int>((m.size() + kernel::kBlock - 1) / kernel::kBlock)),
       background_(static_cast<float>(m.outlier_fraction * m.outlier_density)) {
   if (blocks_ > kMaxBlocks) throw std::invalid_argument("a mixture holds at most 65,536 centres");
   const auto padded = static_cast<std::size_t>(padded_size());
   const auto padded_blocks =
-      static_cast<std::size_t>((blocks_ + kernel::kLanes - 1) / kernel::kLanes * kernel::kLanes);
+      static_cast<std::size_t>((blocks_ + kernel::kBlock - 1) / kernel::kBlock * kernel::kBlock);
   for (auto* a : {&x_, &y_, &z_, &weight_}) a->assign(padded, 0.0f);
   for (auto* a : {&block_x_, &block_y_, &block_z_}) a->assign(padded_blocks, 0.0f);
   block_radius_.assign(padded_blocks, -1.0f);
   for (int b = 0; b < blocks_; ++b) {
-    const Eigen::Index begin = Eigen::Index{b} * kernel::kLanes,
-                       count = std::min<Eigen::Index>(kernel::kLanes, m.size() - begin);
+    const Eigen::Index begin = Eigen::Index{b} * kernel::kBlock,
+                       count = std::min<Eigen::Index>(kernel::kBlock, m.size() - begin);
     const auto part = m.centre.middleCols(begin, count);
     const Eigen::Vector3f middle = 0.5f * (part.rowwise().minCoeff() + part.rowwise().maxCoeff());
     const auto at = static_cast<std::size_t>(b);
     block_x_[at] = middle.x(), block_y_[at] = middle.y(), block_z_[at] = middle.z();
     block_radius_[at] = (part.colwise() - middle).colwise().norm().maxCoeff();
-    for (Eigen::Index i = 0; i < kernel::kLanes; ++i) {
+    for (Eigen::Index i = 0; i < kernel::kBlock; ++i) {
       const auto k = static_cast<std::size_t>(begin + i);
       const Eigen::Vector3f c = i < count ? Eigen::Vector3f(part.col(i)) : middle;
       x_[k] = c.x(), y_[k] = c.y(), z_[k] = c.z();

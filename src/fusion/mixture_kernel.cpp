@@ -32,34 +32,37 @@ inline int blocks_in_reach(const Centres& c, const Localisation& l, int* hit) {
   return hits;
 }
 
-inline V weighted_density(const Centres& c, const Localisation& l, int b) {
-  const int k = b * kLanes;
+// Of the centres k to k + kLanes - 1.
+inline V weighted_density(const Centres& c, const Localisation& l, int k) {
   const V q = quadratic_form(l, load(c.x + k) - l.x, load(c.y + k) - l.y, load(c.z + k) - l.z);
   return load(c.weight + k) * l.norm * exp_of(-0.5f * q);
 }
 
 void density(const Centres& c, const Localisation* l, int n, float* out) {
-  int hit[static_cast<int>(kMaxBlocks) + kLanes];
+  int hit[static_cast<int>(kMaxBlocks) + kBlock];
   for (int j = 0; j < n; ++j) {
     const int hits = blocks_in_reach(c, l[j], hit);
     V total = splat(0);
-    for (int h = 0; h < hits; ++h) total += weighted_density(c, l[j], hit[h]);
+    for (int h = 0; h < hits; ++h)
+      for (int k = hit[h] * kBlock, end = k + kBlock; k < end; k += kLanes)
+        total += weighted_density(c, l[j], k);
     out[j] = sum(total);
   }
 }
 
 void moments(const Centres& c, const Localisation* l, int n, Moments* out) {
-  int hit[static_cast<int>(kMaxBlocks) + kLanes];
+  int hit[static_cast<int>(kMaxBlocks) + kBlock];
   for (int j = 0; j < n; ++j) {
     const int hits = blocks_in_reach(c, l[j], hit);
     V p = splat(0), mx = p, my = p, mz = p, sxx = p, sxy = p, sxz = p, syy = p, syz = p, szz = p;
     for (int h = 0; h < hits; ++h) {
-      const int k = hit[h] * kLanes;
-      const V e = weighted_density(c, l[j], hit[h]);
-      const V x = load(c.x + k), y = load(c.y + k), z = load(c.z + k);
-      const V ex = e * x, ey = e * y, ez = e * z;
-      p += e, mx += ex, my += ey, mz += ez;
-      sxx += ex * x, sxy += ex * y, sxz += ex * z, syy += ey * y, syz += ey * z, szz += ez * z;
+      for (int k = hit[h] * kBlock, end = k + kBlock; k < end; k += kLanes) {
+        const V e = weighted_density(c, l[j], k);
+        const V x = load(c.x + k), y = load(c.y + k), z = load(c.z + k);
+        const V ex = e * x, ey = e * y, ez = e * z;
+        p += e, mx += ex, my += ey, mz += ez;
+        sxx += ex * x, sxy += ex * y, sxz += ex * z, syy += ey * y, syz += ey * z, szz += ez * z;
+      }
     }
     out[j] = {sum(p), sum(mx), sum(my), sum(mz), sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)};
   }
@@ -67,16 +70,18 @@ void moments(const Centres& c, const Localisation* l, int n, Moments* out) {
 
 void accumulate(const Centres& c, const Localisation* l, int n, float background, float* sums, float* inlier,
                 float* density_out, float* scratch) {
-  int hit[static_cast<int>(kMaxBlocks) + kLanes];
-  const int stride = c.blocks * kLanes;
+  int hit[static_cast<int>(kMaxBlocks) + kBlock];
+  const int stride = c.blocks * kBlock;
   for (int j = 0; j < n; ++j) {
     const Localisation& a = l[j];
     const int hits = blocks_in_reach(c, a, hit);
     V total = splat(0);
     for (int h = 0; h < hits; ++h) {
-      const V e = weighted_density(c, a, hit[h]);
-      store(scratch + h * kLanes, e);
-      total += e;
+      for (int i = 0; i < kBlock; i += kLanes) {
+        const V e = weighted_density(c, a, hit[h] * kBlock + i);
+        store(scratch + h * kBlock + i, e);
+        total += e;
+      }
     }
     const float p = sum(total);
     const float scale = 1.0f / (p + background);
@@ -87,15 +92,18 @@ void accumulate(const Centres& c, const Localisation* l, int n, float background
     const float pz = a.pxz * a.x + a.pyz * a.y + a.pzz * a.z;
     const float term[kSums] = {1, a.pxx, a.pxy, a.pxz, a.pyy, a.pyz, a.pzz, px, py, pz};
     for (int h = 0; h < hits; ++h) {
-      const V r = load(scratch + h * kLanes) * scale;
-      float* at = sums + hit[h] * kLanes;
-      for (int s = 0; s < kSums; ++s) store(at + s * stride, load(at + s * stride) + r * term[s]);
+      for (int i = 0; i < kBlock; i += kLanes) {
+        const V r = load(scratch + h * kBlock + i) * scale;
+        float* at = sums + hit[h] * kBlock + i;
+        for (int s = 0; s < kSums; ++s) store(at + s * stride, load(at + s * stride) + r * term[s]);
+      }
     }
   }
 }
 
 void add_gaussian_row(float* row, int begin, int end, float amplitude, float a, float b, float c) {
-  V i = V{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15} + static_cast<float>(begin);
+  static constexpr float kCount[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  V i = load(kCount) + static_cast<float>(begin);
   const float last = static_cast<float>(end);
   for (int k = begin; k < end; k += kLanes, i += static_cast<float>(kLanes)) {
     const V value = amplitude * exp_of(-0.5f * (a + i * (b + c * i)));
@@ -103,21 +111,22 @@ void add_gaussian_row(float* row, int begin, int end, float amplitude, float a, 
   }
 }
 
+// Not a number becomes `low`, so that it is a voxel of the volume still.
+inline V clamped(V v, float low, float high) {
+  v = v > low ? v : splat(low);
+  return v < high ? v : splat(high);
+}
+
 void quantise_log(const float* in, int n, float zero, float scale, short* out) {
   for (int k = 0; k < n; k += kLanes) {  // n is a multiple of 16
     V v = scale * (log_of(load(in + k)) - zero);
-    v = v > 32767.0f ? splat(32767.0f) : v;
-    v = v < -32767.0f ? splat(-32767.0f) : v;
+    v = clamped(v, -32767.0f, 32767.0f);
     v = (v + kRound) - kRound;
     *reinterpret_cast<S*>(out + k) = __builtin_convertvector(__builtin_convertvector(v, I), S);
   }
 }
 
-inline V nearest(V v, float high) {
-  v = v < 0.0f ? splat(0) : v;
-  v = v > high ? splat(high) : v;
-  return (v + kRound) - kRound;
-}
+inline V nearest(V v, float high) { return (clamped(v, 0.0f, high) + kRound) - kRound; }
 
 void rotate(const float* x, const float* y, const float* z, int n, const float* r, float* u, float* v,
             float* w) {
@@ -151,11 +160,12 @@ void nearest_sums(const float* u, const float* v, const float* w, int n, const f
 }
 
 int weighted_densities(const Centres& c, const Localisation& l, int* index, float* density_out) {
-  int hit[static_cast<int>(kMaxBlocks) + kLanes];
+  int hit[static_cast<int>(kMaxBlocks) + kBlock];
   const int hits = blocks_in_reach(c, l, hit);
   for (int h = 0; h < hits; ++h) {
-    store(density_out + h * kLanes, weighted_density(c, l, hit[h]));
-    for (int i = 0; i < kLanes; ++i) index[h * kLanes + i] = hit[h] * kLanes + i;
+    for (int i = 0; i < kBlock; i += kLanes)
+      store(density_out + h * kBlock + i, weighted_density(c, l, hit[h] * kBlock + i));
+    for (int i = 0; i < kBlock; ++i) index[h * kBlock + i] = hit[h] * kBlock + i;
   }
   return hits;
 }

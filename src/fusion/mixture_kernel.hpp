@@ -4,7 +4,7 @@
 
 namespace polar::kernel {
 
-constexpr int kLanes = 16;
+constexpr int kBlock = 16;  // centres of a block; a multiple of the lanes of every instruction set
 
 // A localisation with its effective covariance C turned into what the density needs.
 struct Localisation {

@@ -42,13 +42,13 @@ std::vector<Eigen::Matrix3d> roots_of(const KernelLocalisations& view) {
 std::vector<Term> terms_at(const Mixture& m, const kernel::Centres& centres, float background,
                            const KernelLocalisations& view, const std::vector<Eigen::Matrix3d>& roots) {
   std::vector<Term> terms;
-  const auto padded = static_cast<std::size_t>(centres.blocks * kernel::kLanes);
+  const auto padded = static_cast<std::size_t>(centres.blocks * kernel::kBlock);
   std::vector<int> index(padded);
   std::vector<float> density(padded);
   for (std::size_t j = 0; j < view.size(); ++j) {
     const kernel::Localisation& l = view[j];
     const auto near = static_cast<std::size_t>(
-        kernel::kLanes * mixture_kernel().weighted_densities(centres, l, index.data(), density.data()));
+        kernel::kBlock * mixture_kernel().weighted_densities(centres, l, index.data(), density.data()));
     float total = background;
     for (std::size_t k = 0; k < near; ++k) total += density[k];
     double sum = 0;
