@@ -9,6 +9,7 @@
 #include "mask.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/flames/local_minima.hpp"
+#include "polar/model/one_sided.hpp"
 
 namespace polar {
 
@@ -22,27 +23,9 @@ constexpr double kCropped = 0.95;  // of the template that a class of views show
 constexpr int kCrops = 12, kCroppedPoints = 128;
 constexpr int kShifts = 2;  // centring steps of a candidate under masks
 
-// Squared distance where the template's entries lie above the view's, and below. A maximum over fewer points
-// is lower, so a cropped view may lie below its template, and one with outliers above.
-struct OneSided {
-  float above = 1, below = 1;
-};
-
 OneSided weights_of(const LatentView& view) {
   const auto v = static_cast<float>(view.visibility), o = static_cast<float>(view.outlier_fraction);
   return {v * v, (1 - o) * (1 - o)};
-}
-
-float distance(const float* template_latent, const Eigen::VectorXf& view_latent, OneSided weight) {
-  float above = 0, below = 0;
-  const float* v = view_latent.data();
-  for (Eigen::Index c = 0; c < view_latent.size(); ++c) {
-    const float d = template_latent[c] - v[c];
-    const float up = d > 0 ? d : 0.0f, down = d - up;
-    above += up * up;
-    below += down * down;
-  }
-  return weight.above * above + weight.below * below;
 }
 
 // What a class of views is compared with: the template as it is, or under crops.
@@ -110,7 +93,7 @@ std::vector<Coarse> coarse(const Autoencoder& model, const LatentViews& views, c
       if (cropped) weight.above = 1;  // a crop hides what the view does not show
       for (std::size_t l = 0; l < tile; ++l) {
         const std::size_t at = (first + l) / n;
-        const float d = distance(latent.col(static_cast<Eigen::Index>(l)).data(), wanted[k], weight);
+        const float d = distance(latent.col(static_cast<Eigen::Index>(l)), wanted[k], weight);
         if (!(d < out[k].cost[at])) continue;
         out[k].cost[at] = d;
         out[k].version[at] = static_cast<std::uint8_t>((first + l) % n);

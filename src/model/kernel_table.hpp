@@ -57,6 +57,9 @@ struct Table {
   void (*nearest)(int n, const float* x, const float* y, const float* z, int m, const float* mx,
                   const float* my, const float* mz, const float* half_square, int* index);
 
+  /// sum over n of (a - b)^2, times `above` where a lies above b and times `below` elsewhere.
+  float (*one_sided)(long n, const float* a, const float* b, float above, float below);
+
   void (*adamw)(long n, float* w, const float* g, float* m, float* v, const AdamStep& step);
 };
 

@@ -208,6 +208,25 @@ void nearest(int n, const float* x, const float* y, const float* z, int m, const
   }
 }
 
+float one_sided(long n, const float* a, const float* b, float above, float below) {
+  const Vec up = above - Vec{}, down = below - Vec{};
+  Vec s0{}, s1{};
+  long i = 0;
+  for (; i + kWidth <= n; i += kWidth) {
+    const Vec d0 = load(a + i) - load(b + i), d1 = load(a + i + kLanes) - load(b + i + kLanes);
+    s0 += (d0 > 0.0f ? up : down) * (d0 * d0);
+    s1 += (d1 > 0.0f ? up : down) * (d1 * d1);
+  }
+  s0 += s1;
+  float sum = 0;
+  for (int l = 0; l < kLanes; ++l) sum += s0[l];
+  for (; i < n; ++i) {
+    const float d = a[i] - b[i];
+    sum += (d > 0.0f ? above : below) * (d * d);
+  }
+  return sum;
+}
+
 void adamw(long n, float* __restrict w, const float* __restrict g, float* __restrict m, float* __restrict v,
            const AdamStep& step) {
   const AdamStep s = step;
@@ -219,7 +238,8 @@ void adamw(long n, float* __restrict w, const float* __restrict g, float* __rest
   }
 }
 
-const Table kTable = {kRows, gemm_panel, hidden1, gram, encode_block, hidden1_backward, nearest, adamw};
+const Table kTable = {kRows,   gemm_panel, hidden1, gram, encode_block, hidden1_backward,
+                      nearest, one_sided,  adamw};
 
 }  // namespace
 

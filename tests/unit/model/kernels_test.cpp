@@ -9,6 +9,7 @@
 #include "polar/core/isa.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/model/chamfer.hpp"
+#include "polar/model/one_sided.hpp"
 
 namespace polar {
 namespace {
@@ -137,6 +138,20 @@ TEST_P(EachIsa, chamferAgreesWithBruteForceAndItsGradientWithDifferences) {
           (chamfer(more, b).sum() - chamfer(less, b).sum()) / (2 * static_cast<double>(kStep));
       EXPECT_NEAR(numeric, static_cast<double>(gradient(axis, i)), 1e-3);
     }
+}
+
+TEST_P(EachIsa, weighsWhatLiesAboveApartFromWhatLiesBelow) {
+  const OneSided weight{0.25f, 3.0f};
+  for (const Eigen::Index n : {1, 31, 32, 100, 1024}) {
+    const Eigen::VectorXf a = random_matrix(n, 1, 60), b = random_matrix(n, 1, 61);
+    double expected = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double d = double{a[i]} - double{b[i]};
+      expected += (d > 0 ? 0.25 : 3.0) * d * d;
+    }
+    EXPECT_NEAR(double{distance(a, b, weight)}, expected, 1e-6 * expected) << n;
+    EXPECT_EQ(distance(a, a, weight), 0);
+  }
 }
 
 TEST_P(EachIsa, adamwFollowsItsDefinition) {
