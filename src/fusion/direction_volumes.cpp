@@ -25,6 +25,17 @@ AxialSigma effective_sigma(const Symmetric3& stated, const Eigen::Vector3f& axis
   return axial_sigma(effective_covariance(stated, axis, noise), axis);
 }
 
+// A covariance (isotropic in the plane) in voxels; the centre and the amplitude are the caller's.
+kernel::VoxelGaussian voxel_gaussian(const Eigen::Matrix3f& covariance, float voxel) {
+  const Eigen::Matrix3f p = covariance.inverse() * (voxel * voxel);
+  const Eigen::Vector3f extent = kReach * covariance.diagonal().cwiseSqrt() / voxel;
+  kernel::VoxelGaussian g{};
+  g.pxx = p(0, 0), g.pxy = p(0, 1), g.pxz = p(0, 2), g.pyy = p(1, 1), g.pyz = p(1, 2), g.pzz = p(2, 2);
+  g.reach = kReach;
+  Eigen::Map<Eigen::Vector3f>(g.extent) = extent;
+  return g;
+}
+
 }  // namespace
 
 int SigmaClasses::of(const AxialSigma& s) const {
@@ -139,34 +150,17 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
       c = lat2 * Eigen::Matrix3f::Identity();
     else if (direction_.size() == 1)
       c = (2 * lat2 + ax2) / 3 * Eigen::Matrix3f::Identity();
-    const Eigen::Matrix3f p = c.inverse();
     const float norm =
         planar ? 1 / (kTwoPiF * lat2) : 1 / std::sqrt(kTwoPiF * kTwoPiF * kTwoPiF * c.determinant());
-    const Eigen::Vector3f reach = kReach * c.diagonal().cwiseSqrt() / voxel_;
-    // Rows along x: q(i) = a + b i + c i^2 with i in voxels from the volume's edge.
-    const float cxx = p(0, 0) * voxel_ * voxel_;
     std::vector<float> density = empty;
+    kernel::VoxelGaussian g = voxel_gaussian(c, voxel_);
     for (Eigen::Index k = 0; k < mixture.size(); ++k) {
+      g.amplitude = inlier * mixture.weight[k] * norm;
+      if (g.amplitude < 1e-6f * background) continue;
       const Eigen::Vector3f at = (mixture.centre.col(k) - origin_) / voxel_;
-      const float amplitude = inlier * mixture.weight[k] * norm;
-      if (amplitude < 1e-6f * background) continue;
-      const auto first = [&](int a) { return std::max(0, static_cast<int>(std::ceil(at[a] - reach[a]))); };
-      const auto last = [&](int a) {
-        return std::min(dim_[a] - 1, static_cast<int>(std::floor(at[a] + reach[a])));
-      };
-      for (int z = planar ? 0 : first(2); z <= (planar ? 0 : last(2)); ++z)
-        for (int y = first(1); y <= last(1); ++y) {
-          const float dy = (static_cast<float>(y) - at.y()) * voxel_;
-          const float dz = planar ? 0 : (static_cast<float>(z) - at.z()) * voxel_;
-          const float half = p(0, 1) * dy + p(0, 2) * dz;
-          const float rest = p(1, 1) * dy * dy + 2 * p(1, 2) * dy * dz + p(2, 2) * dz * dz;
-          if (rest - half * half / p(0, 0) > kReach * kReach) continue;  // the row misses the ellipsoid
-          // dx = voxel (i - at.x): expand in i.
-          const float b = 2 * voxel_ * half - 2 * cxx * at.x();
-          const float a = rest + cxx * at.x() * at.x() - 2 * voxel_ * half * at.x();
-          mixture_kernel().add_gaussian_row(density.data() + (z * dim_[1] + y) * dim_[0], first(0),
-                                            last(0) + 1, amplitude, a, b, cxx);
-        }
+      g.x = at.x(), g.y = at.y(), g.z = at.z();
+      if (planar) g.z = g.extent[2] = 0;
+      mixture_kernel().add_gaussian(density.data(), dim_, g);
     }
     mixture_kernel().quantise_log(density.data(), static_cast<int>(stride_), zero_, scale_,
                                   value_.data() + v * stride_);
@@ -174,7 +168,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
 }
 
 std::vector<float> DirectionVolumes::empty_volume(float density, const BackgroundFactor& factor) const {
-  std::vector<float> out(stride_ + kernel::kBlock, density);  // add_gaussian_row touches a little more
+  std::vector<float> out(stride_ + kernel::kBlock, density);  // add_gaussian touches a little more
   if (!factor) return out;
   float* at = out.data();
   for (int z = 0; z < dim_[2]; ++z)

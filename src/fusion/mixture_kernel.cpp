@@ -101,14 +101,41 @@ void accumulate(const Centres& c, const Localisation* l, int n, float background
   }
 }
 
-void add_gaussian_row(float* row, int begin, int end, float amplitude, float a, float b, float c) {
+// Whole voxels from `low` to `high` of an axis with `size` of them: [first, last].
+struct Span {
+  int first, last;
+};
+
+inline Span span_of(float low, float high, int size) {
+  const float end = static_cast<float>(size - 1);
+  if (!(low <= end && high >= 0.0f)) return {0, -1};
+  const int below = low > 0.0f ? static_cast<int>(low) : 0;
+  return {below + (static_cast<float>(below) < low ? 1 : 0), high < end ? static_cast<int>(high) : size - 1};
+}
+
+void add_gaussian(float* volume, const int* dim, const VoxelGaussian& g) {
   static constexpr float kCount[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  V i = load(kCount) + static_cast<float>(begin);
-  const float last = static_cast<float>(end);
-  for (int k = begin; k < end; k += kLanes, i += static_cast<float>(kLanes)) {
-    const V value = amplitude * exp_of(-0.5f * (a + i * (b + c * i)));
-    store(row + k, load(row + k) + (i < last ? value : splat(0)));
-  }
+  const float inverse = 1.0f / g.pxx;
+  const Span along_z = span_of(g.z - g.extent[2], g.z + g.extent[2], dim[2]);
+  const Span along_y = span_of(g.y - g.extent[1], g.y + g.extent[1], dim[1]);
+  for (int z = along_z.first; z <= along_z.last; ++z)
+    for (int y = along_y.first; y <= along_y.last; ++y) {
+      const float dy = static_cast<float>(y) - g.y, dz = static_cast<float>(z) - g.z;
+      const float half = g.pxy * dy + g.pxz * dz;
+      const float rest = g.pyy * dy * dy + 2.0f * g.pyz * dy * dz + g.pzz * dz * dz;
+      // q = rest + 2 half dx + pxx dx^2 is below reach^2 on a chord of the row, or nowhere.
+      const float within = half * half - g.pxx * (rest - g.reach * g.reach);
+      if (!(within > 0.0f)) continue;
+      const float middle = g.x - half * inverse, length = __builtin_sqrtf(within) * inverse;
+      const Span chord = span_of(middle - length, middle + length, dim[0]);
+      float* row = volume + (z * dim[1] + y) * dim[0];
+      V dx = load(kCount) + (static_cast<float>(chord.first) - g.x);
+      const float last = static_cast<float>(chord.last) - g.x;
+      for (int k = chord.first; k <= chord.last; k += kLanes, dx += static_cast<float>(kLanes)) {
+        const V value = g.amplitude * exp_of(-0.5f * (rest + dx * (2.0f * half + g.pxx * dx)));
+        store(row + k, load(row + k) + (dx <= last + 0.5f ? value : splat(0)));
+      }
+    }
 }
 
 // Not a number becomes `low`, so that it is a voxel of the volume still.
@@ -173,7 +200,7 @@ int weighted_densities(const Centres& c, const Localisation& l, int* index, floa
 }  // namespace
 
 const MixtureKernel& POLAR_JOIN(mixture_kernel_, POLAR_ISA)() {
-  static constexpr MixtureKernel kernel{density,      moments, accumulate,   add_gaussian_row,
+  static constexpr MixtureKernel kernel{density,      moments, accumulate,   add_gaussian,
                                         quantise_log, rotate,  nearest_sums, weighted_densities};
   return kernel;
 }

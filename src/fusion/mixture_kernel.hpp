@@ -33,6 +33,15 @@ struct Moments {
 // Sums of a maximisation step: for each centre 1, C^-1 (6), C^-1 x (3), each times the responsibility.
 constexpr int kSums = 10;
 
+// A Gaussian in voxels: q = (x - centre)' P (x - centre). It is drawn where q <= reach^2; `extent` are the
+// half sides of the box about that ellipsoid. In the plane extent[2], pxz and pyz are 0.
+struct VoxelGaussian {
+  float x, y, z;
+  float pxx, pxy, pxz, pyy, pyz, pzz;
+  float amplitude, reach;
+  float extent[3];
+};
+
 constexpr int kMostPoints = 256;  // of one call of nearest_sums: what it keeps fits the first-level cache
 
 struct MixtureKernel {
@@ -44,9 +53,9 @@ struct MixtureKernel {
   // inlier[j] receives total / (total + background), scratch holds 16 x blocks floats.
   void (*accumulate)(const Centres&, const Localisation*, int n, float background, float* sums, float* inlier,
                      float* density, float* scratch);
-  // row[i] += amplitude * exp(-(a + b i + c i^2) / 2) for i in [begin, end); the 15 numbers beyond are
-  // rewritten as they are.
-  void (*add_gaussian_row)(float* row, int begin, int end, float amplitude, float a, float b, float c);
+  // volume += amplitude exp(-q / 2) at the voxels within reach; x is the fastest of the three sizes `dim`.
+  // The 15 numbers after a row are rewritten as they are.
+  void (*add_gaussian)(float* volume, const int* dim, const VoxelGaussian&);
   // out[i] = round(scale * (ln(in[i]) - zero)) clipped to int16.
   void (*quantise_log)(const float* in, int n, float zero, float scale, short* out);
   // u, v, w = rotation x point; rotation is row-major. Arrays are padded to a multiple of 16.
