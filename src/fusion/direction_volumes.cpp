@@ -8,6 +8,7 @@
 #include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/spiral.hpp"
+#include "voxel_gaussian.hpp"
 
 namespace polar {
 
@@ -15,7 +16,8 @@ namespace {
 
 constexpr float kVoxelPerSigma =
     0.8f;  // voxel over the sharpest standard deviation: nearest look-up errs by .23 of it
-constexpr int kLargestDim = 56;          // 56^3 16-bit values fit a second-level cache
+constexpr int kLargestDim = 56;  // 56^3 16-bit values fit a second-level cache
+static_assert(kLargestDim < kernel::kMostRows, "rounding up may add a voxel");
 constexpr float kBorderSigmas = 2.0f;    // beyond the outermost centre
 constexpr float kReach = 3.5f;           // standard deviations a centre is drawn to
 constexpr float kMostIsotropic = 1.25f;  // ratio of standard deviations that one direction still serves
@@ -23,17 +25,6 @@ constexpr float kClassRatio = 1.35f;     // uncertainties within this ratio shar
 
 AxialSigma effective_sigma(const Symmetric3& stated, const Eigen::Vector3f& axis, const NoiseModel& noise) {
   return axial_sigma(effective_covariance(stated, axis, noise), axis);
-}
-
-// A covariance (isotropic in the plane) in voxels; the centre and the amplitude are the caller's.
-kernel::VoxelGaussian voxel_gaussian(const Eigen::Matrix3f& covariance, float voxel) {
-  const Eigen::Matrix3f p = covariance.inverse() * (voxel * voxel);
-  const Eigen::Vector3f extent = kReach * covariance.diagonal().cwiseSqrt() / voxel;
-  kernel::VoxelGaussian g{};
-  g.pxx = p(0, 0), g.pxy = p(0, 1), g.pxz = p(0, 2), g.pyy = p(1, 1), g.pyz = p(1, 2), g.pzz = p(2, 2);
-  g.reach = kReach;
-  Eigen::Map<Eigen::Vector3f>(g.extent) = extent;
-  return g;
 }
 
 }  // namespace
@@ -153,14 +144,12 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
     const float norm =
         planar ? 1 / (kTwoPiF * lat2) : 1 / std::sqrt(kTwoPiF * kTwoPiF * kTwoPiF * c.determinant());
     std::vector<float> density = empty;
-    kernel::VoxelGaussian g = voxel_gaussian(c, voxel_);
+    const VoxelGaussian gaussian(c, voxel_, kReach, planar);
     for (Eigen::Index k = 0; k < mixture.size(); ++k) {
-      g.amplitude = inlier * mixture.weight[k] * norm;
-      if (g.amplitude < 1e-6f * background) continue;
+      const float amplitude = inlier * mixture.weight[k] * norm;
+      if (amplitude < 1e-6f * background) continue;
       const Eigen::Vector3f at = (mixture.centre.col(k) - origin_) / voxel_;
-      g.x = at.x(), g.y = at.y(), g.z = at.z();
-      if (planar) g.z = g.extent[2] = 0;
-      mixture_kernel().add_gaussian(density.data(), dim_, g);
+      mixture_kernel().add_gaussian(density.data(), dim_, gaussian.at(at, amplitude));
     }
     mixture_kernel().quantise_log(density.data(), static_cast<int>(stride_), zero_, scale_,
                                   value_.data() + v * stride_);

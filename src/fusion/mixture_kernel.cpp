@@ -113,29 +113,42 @@ inline Span span_of(float low, float high, int size) {
   return {below + (static_cast<float>(below) < low ? 1 : 0), high < end ? static_cast<int>(high) : size - 1};
 }
 
+constexpr float kCount[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
 void add_gaussian(float* volume, const int* dim, const VoxelGaussian& g) {
-  static constexpr float kCount[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   const float inverse = 1.0f / g.pxx;
   const Span along_z = span_of(g.z - g.extent[2], g.z + g.extent[2], dim[2]);
   const Span along_y = span_of(g.y - g.extent[1], g.y + g.extent[1], dim[1]);
-  for (int z = along_z.first; z <= along_z.last; ++z)
+  float middle[kMostRows + kLanes], amplitude[kMostRows + kLanes], room[kMostRows + kLanes];
+  for (int z = along_z.first; z <= along_z.last; ++z) {
+    const float dz = static_cast<float>(z) - g.z;
+    for (int y = along_y.first; y <= along_y.last; y += kLanes) {
+      // q = rest + 2 half dx + pxx dx^2 = least + pxx (x - middle)^2 along the row.
+      const V dy = load(kCount) + (static_cast<float>(y) - g.y);
+      const V half = g.pxy * dy + g.pxz * dz;
+      const V rest = g.pyy * dy * dy + 2.0f * g.pyz * dy * dz + g.pzz * dz * dz;
+      const V least = rest - half * half * inverse;
+      store(middle + y, g.x - half * inverse);
+      store(amplitude + y, g.amplitude * exp_of(-0.5f * least));
+      store(room + y, (g.reach * g.reach - least) * inverse);
+    }
     for (int y = along_y.first; y <= along_y.last; ++y) {
-      const float dy = static_cast<float>(y) - g.y, dz = static_cast<float>(z) - g.z;
-      const float half = g.pxy * dy + g.pxz * dz;
-      const float rest = g.pyy * dy * dy + 2.0f * g.pyz * dy * dz + g.pzz * dz * dz;
-      // q = rest + 2 half dx + pxx dx^2 is below reach^2 on a chord of the row, or nowhere.
-      const float within = half * half - g.pxx * (rest - g.reach * g.reach);
-      if (!(within > 0.0f)) continue;
-      const float middle = g.x - half * inverse, length = __builtin_sqrtf(within) * inverse;
-      const Span chord = span_of(middle - length, middle + length, dim[0]);
+      if (!(room[y] > 0.0f)) continue;
+      const float length = __builtin_sqrtf(room[y]);
+      const Span chord = span_of(middle[y] - length, middle[y] + length, dim[0]);
+      if (chord.first > chord.last) continue;
+      const int base = static_cast<int>(middle[y]) - (middle[y] < 0.0f ? 1 : 0);
+      const int phase =
+          static_cast<int>((middle[y] - static_cast<float>(base)) * static_cast<float>(g.phases) + 0.5f);
+      const float* profile = g.profile + phase * g.stride + g.lead - base;
       float* row = volume + (z * dim[1] + y) * dim[0];
-      V dx = load(kCount) + (static_cast<float>(chord.first) - g.x);
-      const float last = static_cast<float>(chord.last) - g.x;
-      for (int k = chord.first; k <= chord.last; k += kLanes, dx += static_cast<float>(kLanes)) {
-        const V value = g.amplitude * exp_of(-0.5f * (rest + dx * (2.0f * half + g.pxx * dx)));
-        store(row + k, load(row + k) + (dx <= last + 0.5f ? value : splat(0)));
+      for (int k = chord.first; k <= chord.last; k += kLanes) {
+        const V value = amplitude[y] * load(profile + k);
+        store(row + k,
+              load(row + k) + (load(kCount) <= static_cast<float>(chord.last - k) ? value : splat(0)));
       }
     }
+  }
 }
 
 // Not a number becomes `low`, so that it is a voxel of the volume still.

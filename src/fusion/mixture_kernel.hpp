@@ -34,14 +34,19 @@ struct Moments {
 constexpr int kSums = 10;
 
 // A Gaussian in voxels: q = (x - centre)' P (x - centre). It is drawn where q <= reach^2; `extent` are the
-// half sides of the box about that ellipsoid. In the plane extent[2], pxz and pyz are 0.
+// half sides of the box about that ellipsoid. In the plane extent[2], pxz and pyz are 0. All rows of voxels
+// cut it to the same profile along x, which is tabulated: profile[f * stride + i] = exp(-pxx (i - lead - f /
+// phases)^2 / 2) for f = 0 ... phases, with 16 numbers more than reach.
 struct VoxelGaussian {
   float x, y, z;
   float pxx, pxy, pxz, pyy, pyz, pzz;
   float amplitude, reach;
   float extent[3];
+  const float* profile;
+  int phases, lead, stride;
 };
 
+constexpr int kMostRows = 64;     // voxels along y of a volume, at most
 constexpr int kMostPoints = 256;  // of one call of nearest_sums: what it keeps fits the first-level cache
 
 struct MixtureKernel {
