@@ -7,6 +7,7 @@
 #include "finish.hpp"
 #include "polar_start.hpp"
 #include "states.hpp"
+#include "two_copies.hpp"
 
 namespace polar {
 
@@ -116,6 +117,24 @@ bool challenge(const Problems& problems, const SearchGrid& grid, const RoundOpti
   return true;
 }
 
+// Where the winner holds the structure twice, it is registered again from one copy. False: cancelled.
+bool undouble(const Problems& problems, const SearchGrid& grid, const RoundOptions& rounds,
+              Progress& progress, Checkpoint& checkpoint, StartsOutcome& out) {
+  const Problem& problem = problems.of(out.winner.crowded);
+  const std::vector<int> which = views_of_one_copy(problem, out.winner);
+  if (which.empty()) return true;
+  RoundState state = with_one_copy(problem, rounds, which, out.winner);
+  if (!run_rounds(problem, grid, rounds, progress, checkpoint, state)) return false;
+  const StartReport report{"one copy", out.winner.held_out, state.held_out,
+                           state.held_out > out.winner.held_out};
+  if (report.won) {
+    for (StartReport& other : out.report) other.won = false;
+    out.winner = std::move(state);
+  }
+  out.report.push_back(report);
+  return true;
+}
+
 RoundState state_of(const StartContext& context, const Hypothesis& h) {
   RoundState state;
   state.mixture = h.mixture;
@@ -164,6 +183,10 @@ StartsOutcome compete(const Problems& problems, const Autoencoder* model, const 
   if (wants(options, "assembled")) {
     PartOfCheckpoint here(checkpoint, "finalist assembled");
     if (!challenge(problems, grid, rounds, progress, here, out)) return {};
+  }
+  if (out.finished) {
+    PartOfCheckpoint here(checkpoint, "finalist of one copy");
+    if (!undouble(problems, grid, rounds, progress, here, out)) return {};
   }
   return out;
 }

@@ -1,0 +1,82 @@
+#include "two_copies.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "jury.hpp"
+#include "polar/core/rng.hpp"
+#include "polar/fusion/maximisation.hpp"
+#include "polar/fusion/occupancy.hpp"
+#include "template_tools.hpp"
+
+namespace polar {
+
+namespace {
+
+constexpr std::size_t kLocalisations = 200;  // of a view
+constexpr double kStrength = 1;              // of the occupancy's prior
+constexpr double kTwoGroups =
+    1.5;  // kurtosis: 1 for two equal groups, 1.8 for an even spread, 3 for a normal one
+constexpr int kIterations = 60, kSweeps = 8;
+constexpr std::uint32_t kVectorStage = 37;
+
+// Where views differ most in the centres they show: the first principal component, one number a view.
+Eigen::VectorXf first_component(const Eigen::MatrixXf& shown, std::uint64_t seed) {
+  const Eigen::MatrixXf m = shown.rowwise() - shown.colwise().mean();
+  Eigen::VectorXf u(m.rows());
+  KeyedRandom random(seed, 0, kVectorStage);
+  for (float& x : u) x = static_cast<float>(random.normal());
+  for (int i = 0; i < kIterations; ++i) {
+    u = (m * (m.transpose() * u)).eval();
+    const float length = u.norm();
+    if (!(length > 0)) return Eigen::VectorXf::Zero(m.rows());
+    u /= length;
+  }
+  return u;
+}
+
+}  // namespace
+
+std::vector<int> views_of_one_copy(const Problem& problem, const RoundState& state) {
+  NoiseModel noise;
+  noise.planar = problem.planar();
+  noise.width = state.width;
+  const FusionData data(problem.views, problem.axes, noise, first_of(problem.fitted, kLocalisations));
+  const auto factor = occupancy(state.mixture, data, state.pose, kStrength, reach_of(noise));
+  Eigen::MatrixXf shown(static_cast<Eigen::Index>(problem.size()), state.mixture.size());
+  for (std::size_t i = 0; i < factor.size(); ++i)
+    for (Eigen::Index k = 0; k < shown.cols(); ++k)
+      shown(static_cast<Eigen::Index>(i), k) =
+          factor[i][static_cast<std::size_t>(k)] * state.mixture.weight[k];
+  const Eigen::ArrayXf u = first_component(shown, problem.seed).array();
+  const float kurtosis = u.square().square().mean() / (u.square().mean() * u.square().mean());
+  if (!(kurtosis < kTwoGroups)) return {};
+  const bool positive = 2 * (u > 0).count() >= u.size();
+  std::vector<int> out;
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    if ((u[i] > 0) == positive) out.push_back(static_cast<int>(i));
+  return out;
+}
+
+RoundState with_one_copy(const Problem& problem, const RoundOptions& options, const std::vector<int>& which,
+                         const RoundState& state) {
+  RoundState out = state;
+  const Subsets few = first_of(problem.fitted, kLocalisations);
+  const std::vector<Pose> pose = poses_of(state, which);
+  out.mixture = scattered_mixture(problem, few, which, pose, centres_for(problem), 1);
+  out.mixture.outlier_fraction = first_outlier_fraction(state.crowded);
+  NoiseModel noise;
+  noise.planar = problem.planar();
+  noise.width = options.first_width;
+  const FusionData data(problem.views, problem.axes, noise, few, which);
+  MaximisationOptions em = fusion_options(state.crowded, noise.width);
+  for (int s = 0; s < kSweeps; ++s) {
+    em.seed = problem.seed + static_cast<std::uint64_t>(s);
+    maximise(out.mixture, data, pose, em);
+  }
+  out.width = 0;
+  out.held_out = -1e300;
+  return out;
+}
+
+}  // namespace polar

@@ -1,0 +1,64 @@
+#include "registration/two_copies.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "polar/core/constants.hpp"
+#include "polar/core/so3.hpp"
+#include "site_scene.hpp"
+
+namespace polar {
+namespace {
+
+constexpr int kFirst = 11;  // views of the first copy
+
+// Nine of the twenty views, and a copy of the template for them, turned by half a turn.
+struct Doubled : SiteScene {
+  std::vector<Pose> truth = state.pose;
+
+  Doubled() {
+    const Pose turn{so3_exp({0, 0, kPi}), {0, 0, 0}};
+    for (std::size_t i = kFirst; i < 20; ++i) state.pose[i] = turn * state.pose[i];
+    Mixture both = state.mixture;
+    both.centre.resize(3, 24), both.weight.resize(24);
+    both.centre << state.mixture.centre, turn.rotation.cast<float>() * state.mixture.centre;
+    both.weight << state.mixture.weight * (kFirst / 20.0f), state.mixture.weight * (1 - kFirst / 20.0f);
+    sort_into_blocks(both);
+    state.mixture = both;
+    state.width = 0.05;
+  }
+};
+
+TEST(TwoCopies, theViewsOfTheLargerOneAreFound) {
+  Doubled scene;
+  const Problems problems = make_problems(scene.views, 1);
+  std::vector<int> larger(kFirst);
+  std::iota(larger.begin(), larger.end(), 0);
+  EXPECT_EQ(views_of_one_copy(problems.plain, scene.state), larger);
+}
+
+TEST(TwoCopies, oneCopyIsNotSplit) {
+  SiteScene scene;
+  scene.state.width = 0.05;
+  const Problems problems = make_problems(scene.views, 1);
+  EXPECT_TRUE(views_of_one_copy(problems.plain, scene.state).empty());
+}
+
+TEST(TwoCopies, roundsFromOneCopyBringAllViewsTogether) {
+  Doubled scene;
+  const Problems problems = make_problems(scene.views, 1);
+  const RoundOptions options;
+  RoundState state =
+      with_one_copy(problems.plain, options, views_of_one_copy(problems.plain, scene.state), scene.state);
+  Progress silent;
+  Checkpoint nothing;
+  ASSERT_TRUE(
+      run_rounds(problems.plain, search_grid(options.rotations, false), options, silent, nothing, state));
+  const Eigen::Matrix3d global = state.pose[0].rotation * scene.truth[0].rotation.transpose();
+  for (std::size_t i = 0; i < 20; ++i)
+    EXPECT_LT(geodesic_angle(state.pose[i].rotation, global * scene.truth[i].rotation), 0.15) << i;
+}
+
+}  // namespace
+}  // namespace polar
