@@ -43,11 +43,11 @@ std::vector<int> views_of_one_copy(const Problem& problem, const RoundState& sta
   noise.width = state.width;
   const FusionData data(problem.views, problem.axes, noise, first_of(problem.fitted, kLocalisations));
   const auto factor = occupancy(state.mixture, data, state.pose, kStrength, reach_of(noise));
-  Eigen::MatrixXf shown(static_cast<Eigen::Index>(problem.size()), state.mixture.size());
-  for (std::size_t i = 0; i < factor.size(); ++i)
-    for (Eigen::Index k = 0; k < shown.cols(); ++k)
-      shown(static_cast<Eigen::Index>(i), k) =
-          factor[i][static_cast<std::size_t>(k)] * state.mixture.weight[k];
+  Eigen::MatrixXf shown =
+      state.mixture.weight.transpose().replicate(static_cast<Eigen::Index>(problem.size()), 1);
+  for (std::size_t i = 0; i < factor.size(); ++i)  // a view without localisations has none
+    for (std::size_t k = 0; k < factor[i].size(); ++k)
+      shown(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) *= factor[i][k];
   const Eigen::ArrayXf u = first_component(shown, problem.seed).array();
   const float kurtosis = u.square().square().mean() / (u.square().mean() * u.square().mean());
   if (!(kurtosis < kTwoGroups)) return {};

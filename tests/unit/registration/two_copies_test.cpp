@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "polar/core/constants.hpp"
@@ -36,6 +37,16 @@ TEST(TwoCopies, theViewsOfTheLargerOneAreFound) {
   std::vector<int> larger(kFirst);
   std::iota(larger.begin(), larger.end(), 0);
   EXPECT_EQ(views_of_one_copy(problems.plain, scene.state), larger);
+}
+
+TEST(TwoCopies, aViewWithoutLocalisationsIsLeftAside) {
+  Doubled scene;
+  scene.views.view[0].points.resize(3, 0), scene.views.view[0].covariance.clear();
+  const Problems problems = make_problems(scene.views, 1);
+  const std::vector<int> found = views_of_one_copy(problems.plain, scene.state);
+  for (int i = 1; i < kFirst; ++i)
+    EXPECT_EQ(std::count(found.begin(), found.end(), i), std::count(found.begin(), found.end(), 1)) << i;
+  EXPECT_NE(std::count(found.begin(), found.end(), 1), std::count(found.begin(), found.end(), 19));
 }
 
 TEST(TwoCopies, oneCopyIsNotSplit) {
