@@ -1,8 +1,5 @@
 #include "two_copies.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "jury.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/fusion/maximisation.hpp"
