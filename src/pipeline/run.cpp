@@ -117,6 +117,11 @@ std::string format(const char* pattern, double value) {
   return text;
 }
 
+std::string agreement_text(double agreement) {
+  if (!(agreement > 0)) return "";
+  return format(", two random ones pose %.0f %% of the particles alike", 100 * agreement);
+}
+
 // NaN has no place in JSON.
 nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
@@ -169,7 +174,8 @@ std::vector<std::string> describe(const Results& r, const std::vector<Stranger>&
                   format("%.2f nm", upper_median(translation)) +
                   " (median of the estimated standard deviations)");
   if (!unlike.empty()) lines.push_back(strangers_line(unlike));
-  lines.push_back("start        " + winner(g) + " won of " + std::to_string(g.starts.size()));
+  lines.push_back("start        " + winner(g) + " won of " + std::to_string(g.starts.size()) +
+                  agreement_text(g.agreement));
   lines.push_back("rounds       " + std::to_string(g.rounds) +
                   (g.converged ? ", converged: " : ", not converged: ") + g.stopped_because);
   if (g.symmetry) lines.push_back(pipeline::symmetry_line(*g.symmetry, r.normalisation.scale_nm));
@@ -201,6 +207,7 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
                             {"converged", g.converged},
                             {"stopped_because", g.stopped_because},
                             {"starts", starts},
+                            {"starts_agreement", g.agreement},
                             {"timings", timings},
                             {"warnings", g.warnings},
                             {"seconds", seconds},

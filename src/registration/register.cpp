@@ -232,6 +232,7 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
     keep(checkpoint, "winner", starts);
   }
   run.out.starts = starts.report;
+  run.out.agreement = starts.agreement;
   run.out.weights_sha256 = std::move(model.weights_sha256);
   return from_state(run, options, std::move(starts.winner));
 }

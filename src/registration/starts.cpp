@@ -1,11 +1,12 @@
 #include "starts.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 
+#include "agreement.hpp"
 #include "assembly.hpp"
 #include "finish.hpp"
-#include "polar_start.hpp"
+#include "short_runs.hpp"
 #include "states.hpp"
 #include "two_copies.hpp"
 
@@ -13,76 +14,13 @@ namespace polar {
 
 namespace {
 
-constexpr int kFewestRandom = 3, kMostRandom = 12;
-constexpr double kLookUpBudget =
-    3.0e9;                       // over all random starts: seconds on two cores, whatever the size of the set
-constexpr double kShifts = 7.0;  // tried for every rotation
-constexpr int kLongStarts = 6;   // that the budget must allow
-constexpr double kLongest = 2.0;  // times the usual
 constexpr int kMostFinalists = 5;
 constexpr double kFinalistLocalisations =
     130000;  // views x localisations that the finalists may cost together
-
-double look_ups_of_a_sweep(const StartContext& context, const AnnealingOptions& options) {
-  double localisations = 0;
-  for (const int i : context.which)
-    localisations += static_cast<double>(context.fitted[static_cast<std::size_t>(i)].size());
-  return std::max(1.0, localisations * options.rotations * kShifts);
-}
-
-// What the budget buys: where localisations are few a start is cheap and often fails, so starts are long
-// there, with a template of more centres that ends sharper, and many.
-AnnealingOptions annealing(const StartContext& context) {
-  AnnealingOptions options;
-  if (context.problem.planar()) return options;  // turns in the plane are few
-  const double longer = std::clamp(
-      kLookUpBudget / kLongStarts / look_ups_of_a_sweep(context, options) / options.sweeps, 1.0, kLongest);
-  options.sweeps = static_cast<int>(options.sweeps * longer);
-  options.centres = static_cast<int>(options.centres * longer);
-  options.last_width /= std::sqrt(longer);
-  return options;
-}
-
-int random_starts(const StartContext& context) {
-  const AnnealingOptions usual;
-  return std::clamp(static_cast<int>(kLookUpBudget / (look_ups_of_a_sweep(context, usual) * usual.sweeps)),
-                    kFewestRandom, kMostRandom);
-}
-
-std::vector<Hypothesis> short_runs(const StartContext& thinned, const StartContext& plain,
-                                   const Autoencoder* model, const RegistrationOptions& wishes,
-                                   Progress& progress, Checkpoint& checkpoint) {
-  const AnnealingOptions options = annealing(plain);
-  const int random = wants(wishes, "random") ? random_starts(plain) : 0;
-  const bool polar = wants(wishes, "polar");
-  const int total = random + (polar ? 1 : 0) + (wants(wishes, "imaged") ? 1 : 0);
-  std::vector<Hypothesis> hypotheses;
-  for (int k = 0; k < total && !progress.cancelled(); ++k) {
-    const std::string name = "start " + std::to_string(k);
-    Hypothesis known;
-    if (restore(checkpoint, name, known)) {
-      hypotheses.push_back(std::move(known));
-      continue;
-    }
-    if (k < random) {
-      const bool crowded = k % 2 == 0;
-      const StartContext& context = crowded ? thinned : plain;
-      hypotheses.push_back(random_start(context, options.centres, k, crowded));
-      anneal(context, options, false, hypotheses.back());
-    } else {
-      hypotheses.push_back(polar && k == random ? polar_start(plain, *model, wishes, options.centres, k)
-                                                : imaged_start(plain, options.centres, k));
-      AnnealingOptions gentle = options;  // the poses are meant to be near: begin narrower and colder
-      gentle.first_width = 0.2;
-      gentle.first_beta = 1;
-      gentle.sweeps = options.sweeps / 2;
-      anneal(plain, gentle, true, hypotheses.back());
-    }
-    keep(checkpoint, name, hypotheses.back());
-    progress.step("starts", k + 1, total);
-  }
-  return hypotheses;
-}
+// What two random starts share is neither a wrong basin nor two copies, which differ from start to start. A
+// symmetric structure never agrees so, because its views are turned at will.
+constexpr double kAgreement = 0.95;
+constexpr std::size_t kViewsThatAgree = 10;  // fewer may agree by chance
 
 double score_of_parts(const Problem& problem, const RoundState& state) {
   NoiseModel noise;
@@ -135,14 +73,78 @@ bool undouble(const Problems& problems, const SearchGrid& grid, const RoundOptio
   return true;
 }
 
-RoundState state_of(const StartContext& context, const Hypothesis& h) {
-  RoundState state;
-  state.mixture = h.mixture;
-  state.crowded = h.crowded;
-  state.pose.resize(context.problem.size());
-  for (std::size_t k = 0; k < context.which.size(); ++k)
-    state.pose[static_cast<std::size_t>(context.which[k])] = h.pose[k];
-  return state;
+// The starts that are registered on all views, by their number.
+class Finalists {
+ public:
+  Finalists(const Problems& problems, const ShortRuns& runs, const SearchGrid& grid,
+            const RoundOptions& rounds, Progress& progress, Checkpoint& checkpoint)
+      : problems_(problems),
+        runs_(runs),
+        grid_(grid),
+        rounds_(rounds),
+        progress_(progress),
+        checkpoint_(checkpoint) {}
+
+  /// Registers those that are not yet registered; false: cancelled.
+  bool add(const std::vector<Hypothesis>& best_first, std::size_t most) {
+    for (std::size_t k = 0; k < std::min(most, best_first.size()); ++k)
+      if (state_.count(best_first[k].number) == 0 && !add(best_first[k])) return false;
+    return true;
+  }
+
+  bool has(const Hypothesis& h) const { return state_.count(h.number) > 0; }
+  RoundState& of(const Hypothesis& h) { return state_.at(h.number); }
+
+ private:
+  bool add(const Hypothesis& h) {
+    PartOfCheckpoint here(checkpoint_, "finalist " + std::to_string(h.number));
+    RoundState state;
+    if (!restore(here, "registered", state)) {
+      state = runs_.state_of(h);
+      if (!run_rounds(problems_.of(h.crowded), grid_, rounds_, progress_, here, state)) return false;
+      keep(here, "registered", state);
+    }
+    state_.emplace(h.number, std::move(state));
+    return true;
+  }
+
+  const Problems& problems_;
+  const ShortRuns& runs_;
+  const SearchGrid& grid_;
+  const RoundOptions& rounds_;
+  Progress& progress_;
+  Checkpoint& checkpoint_;
+  std::map<int, RoundState> state_;
+};
+
+void rank(std::vector<Hypothesis>& hypotheses) {
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
+}
+
+std::size_t finalists_for(const Problem& problem) {
+  return static_cast<std::size_t>(std::clamp(
+      static_cast<int>(kFinalistLocalisations / std::max(1.0, problem.localisations)), 1, kMostFinalists));
+}
+
+// Two registrations cost less than the starts that they may save.
+bool may_agree(const Problem& problem) {
+  return problem.size() >= kViewsThatAgree && problem.localisations <= kFinalistLocalisations;
+}
+
+// The best of the registered ones and a report of all.
+void judge(const std::vector<Hypothesis>& best_first, Finalists& finalists, StartsOutcome& out) {
+  const Hypothesis* best = nullptr;
+  for (const Hypothesis& h : best_first) {
+    out.report.push_back({h.name, h.held_out, 0, false});
+    if (!finalists.has(h)) continue;
+    out.report.back().final_held_out_log_likelihood = finalists.of(h).held_out;
+    if (best == nullptr || finalists.of(h).held_out > finalists.of(*best).held_out) best = &h;
+  }
+  out.finished = best != nullptr;
+  if (!out.finished) return;
+  for (StartReport& report : out.report) report.won = report.name == best->name;
+  out.winner = std::move(finalists.of(*best));
 }
 
 }  // namespace
@@ -150,36 +152,27 @@ RoundState state_of(const StartContext& context, const Hypothesis& h) {
 StartsOutcome compete(const Problems& problems, const Autoencoder* model, const RegistrationOptions& options,
                       const SearchGrid& grid, const RoundOptions& rounds, Progress& progress,
                       Checkpoint& checkpoint) {
-  const StartContext thinned = start_context(problems.thinned), plain = start_context(problems.plain);
-  std::vector<Hypothesis> hypotheses = short_runs(thinned, plain, model, options, progress, checkpoint);
-  if (progress.cancelled()) return {};
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
+  const ShortRuns runs(problems, model, options);
+  Finalists finalists(problems, runs, grid, rounds, progress, checkpoint);
+  std::vector<Hypothesis> hypotheses;
   StartsOutcome out;
-  for (const Hypothesis& h : hypotheses) out.report.push_back({h.name, h.held_out, 0, false});
-  const std::size_t finalists =
-      std::min(hypotheses.size(),
-               static_cast<std::size_t>(std::clamp(
-                   static_cast<int>(kFinalistLocalisations / std::max(1.0, problems.plain.localisations)), 1,
-                   kMostFinalists)));
-  std::size_t best = 0;
-  for (std::size_t k = 0; k < finalists; ++k) {
-    PartOfCheckpoint here(checkpoint, "finalist " + std::to_string(k));
-    RoundState state;
-    if (!restore(here, "registered", state)) {
-      state = state_of(hypotheses[k].crowded ? thinned : plain, hypotheses[k]);
-      if (!run_rounds(problems.of(hypotheses[k].crowded), grid, rounds, progress, here, state)) return {};
-      keep(here, "registered", state);
-    }
-    out.report[k].final_held_out_log_likelihood = state.held_out;
-    if (k > 0 &&
-        out.report[k].final_held_out_log_likelihood <= out.report[best].final_held_out_log_likelihood)
-      continue;
-    best = k;
-    out.winner = std::move(state);
-    out.finished = true;
+  for (const int count : {runs.few_random(), runs.random()}) {
+    runs.run_until(count, progress, checkpoint, hypotheses);
+    if (progress.cancelled()) return {};
+    rank(hypotheses);
+    if (hypotheses.size() < 2 || !may_agree(problems.plain)) continue;
+    if (!finalists.add(hypotheses, 2)) return {};
+    const double alike = agreement(finalists.of(hypotheses[0]).pose, finalists.of(hypotheses[1]).pose);
+    if (alike < kAgreement) continue;
+    out.agreement = alike;
+    judge(hypotheses, finalists, out);
+    return out;
   }
-  if (out.finished) out.report[best].won = true;
+  runs.run_until(runs.all(), progress, checkpoint, hypotheses);
+  if (progress.cancelled()) return {};
+  rank(hypotheses);
+  if (!finalists.add(hypotheses, finalists_for(problems.plain))) return {};
+  judge(hypotheses, finalists, out);
   if (wants(options, "assembled")) {
     PartOfCheckpoint here(checkpoint, "finalist assembled");
     if (!challenge(problems, grid, rounds, progress, here, out)) return {};

@@ -1,12 +1,11 @@
 // Starts are hypotheses, and they compete: a short run of each on a few views, the best few are then
 // registered on all views, and the best of those by the likelihood of localisations that were kept out of the
-// fusion wins.
+// fusion wins. Where the best two random starts come to the same poses they have settled it.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "ab_initio.hpp"
 #include "polar/core/progress.hpp"
 #include "polar/model/autoencoder.hpp"
 #include "polar/registration/checkpoint.hpp"
@@ -18,6 +17,7 @@ namespace polar {
 struct StartsOutcome {
   RoundState winner;  // registered on all views
   std::vector<StartReport> report;
+  double agreement = 0;   // Registration::agreement
   bool finished = false;  // false: cancelled
 };
 

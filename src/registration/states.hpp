@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "ab_initio.hpp"
 #include "byte_archive.hpp"
 #include "polar/registration/checkpoint.hpp"
 #include "starts.hpp"
@@ -69,8 +70,8 @@ void fields(Archive& archive, StartReport& value) {
 }
 template <class Archive>
 void fields(Archive& archive, StartsOutcome& value) {
-  auto& [winner, report, finished] = value;
-  archive(winner, report, finished);
+  auto& [winner, report, agreement, finished] = value;
+  archive(winner, report, agreement, finished);
 }
 
 }  // namespace states

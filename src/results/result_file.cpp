@@ -169,6 +169,7 @@ void write_run(File& file, const Results& r) {
   file.write("/run/starts/held_out_log_likelihood", held_out);
   file.write("/run/starts/final_held_out_log_likelihood", final_held_out);
   file.write("/run/starts/won", won);
+  file.write_attribute("/run/starts", "agreement", g.agreement);
   const double scale_nm = r.normalisation.scale_nm;
   file.make_group("/run/calibration");
   file.write_string_attribute("/run/calibration", "meaning",

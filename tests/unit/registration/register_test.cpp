@@ -14,6 +14,7 @@
 #include "polar/core/symmetry_group.hpp"
 #include "polar/registration/prepare.hpp"
 #include "polar/simulation/simulate.hpp"
+#include "site_scene.hpp"
 
 namespace polar {
 namespace {
@@ -129,28 +130,21 @@ class Interrupting : public Checkpoint, public Progress {
   int count = 0, most = 1 << 30;
 };
 
-TEST(RegisterViews, continuesFromTheStatesItKeepsToTheSameBits) {
-  SimulationOptions o = small(5);
-  o.particles = 12;
-  const Simulated s = simulated(o);
-  RegistrationOptions options;
-  options.starts = {"polar", "imaged"};
-  options.latent.rotations = 300;
-  options.latent.localisations = 100;
-  Interrupting whole;
-  const Registration expected = register_views(s.views, options, whole, whole);
+void expectTheSameBitsAfterInterruptions(const Views& views, const RegistrationOptions& options,
+                                         const Registration& expected, const Interrupting& whole) {
   EXPECT_THAT(whole.names,
               ::testing::IsSupersetOf({"start 0", "start 1", "finalist 0/rounds", "winner", "fused"}));
   EXPECT_EQ(whole.kept.size(), 2u);  // winner and fused supersede all others
   for (int most = 1; most <= whole.count; most += 1 + most / 3) {
     Interrupting run;
     run.most = most;
-    register_views(s.views, options, run, run);
+    register_views(views, options, run, run);
     ASSERT_TRUE(run.cancelled()) << most;
     run.most = 1 << 30;
-    const Registration r = register_views(s.views, options, run, run);
+    const Registration r = register_views(views, options, run, run);
     ASSERT_EQ(r.stopped_because, expected.stopped_because) << most;
     ASSERT_EQ(r.starts.size(), expected.starts.size());
+    ASSERT_EQ(r.agreement, expected.agreement);
     for (std::size_t k = 0; k < r.starts.size(); ++k)
       EXPECT_EQ(r.starts[k].final_held_out_log_likelihood, expected.starts[k].final_held_out_log_likelihood);
     EXPECT_EQ(r.fused.centre, expected.fused.centre) << most;
@@ -162,6 +156,27 @@ TEST(RegisterViews, continuesFromTheStatesItKeepsToTheSameBits) {
       EXPECT_EQ(r.view[i].margin, expected.view[i].margin) << most;
     }
   }
+}
+
+TEST(RegisterViews, continuesFromTheStatesItKeepsToTheSameBits) {
+  SimulationOptions o = small(5);
+  o.particles = 12;
+  const Simulated s = simulated(o);
+  RegistrationOptions options;
+  options.starts = {"polar", "imaged"};
+  options.latent.rotations = 300;
+  options.latent.localisations = 100;
+  Interrupting whole;
+  const Registration expected = register_views(s.views, options, whole, whole);
+  expectTheSameBitsAfterInterruptions(s.views, options, expected, whole);
+}
+
+TEST(RegisterViews, continuesWhereRandomStartsAgreeToTheSameBits) {
+  const SiteScene scene;
+  Interrupting whole;
+  const Registration expected = register_views(scene.views, {}, whole, whole);
+  ASSERT_GT(expected.agreement, 0);
+  expectTheSameBitsAfterInterruptions(scene.views, {}, expected, whole);
 }
 
 TEST(RegisterViews, planarDataStaysInItsPlane) {

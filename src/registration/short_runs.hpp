@@ -1,0 +1,41 @@
+// The first stage of the competition: a short run of every start, on a few localisations of a few views.
+#pragma once
+
+#include <vector>
+
+#include "ab_initio.hpp"
+#include "polar/core/progress.hpp"
+#include "polar/model/autoencoder.hpp"
+#include "polar/registration/checkpoint.hpp"
+#include "polar/registration/register.hpp"
+#include "rounds.hpp"
+
+namespace polar {
+
+class ShortRuns {
+ public:
+  /// `model`: of the start `polar`, null where it is not wanted.
+  ShortRuns(const Problems& problems, const Autoencoder* model, const RegistrationOptions& options);
+
+  /// The random starts come first, then those that begin with poses from elsewhere, `polar` and `imaged`.
+  int few_random() const;
+  int random() const { return random_; }
+  int all() const { return all_; }
+
+  /// Runs starts until `out` holds `count` of them; fewer when cancelled. What the checkpoint holds is not
+  /// run again.
+  void run_until(int count, Progress& progress, Checkpoint& checkpoint, std::vector<Hypothesis>& out) const;
+
+  /// What a hypothesis says of all views; identity for those that took no part.
+  RoundState state_of(const Hypothesis& h) const;
+
+ private:
+  Hypothesis run(int number) const;
+
+  StartContext thinned_, plain_;
+  const Autoencoder* model_;
+  const RegistrationOptions& options_;
+  int random_, all_;
+};
+
+}  // namespace polar
