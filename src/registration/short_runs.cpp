@@ -65,11 +65,25 @@ Hypothesis ShortRuns::run(int number) const {
   Hypothesis h = wants(options_, "polar") && number == random_
                      ? polar_start(plain_, *model_, options_, usual.centres, number)
                      : imaged_start(plain_, usual.centres, number);
-  AnnealingOptions gentle = usual;  // the poses are meant to be near: begin narrower and colder
+  settle(h);
+  return h;
+}
+
+// Where the poses are meant to be near: begins narrower and colder.
+void ShortRuns::settle(Hypothesis& h) const {
+  AnnealingOptions gentle = annealing(plain_);
   gentle.first_width = 0.2;
   gentle.first_beta = 1;
-  gentle.sweeps = usual.sweeps / 2;
+  gentle.sweeps /= 2;
   anneal(plain_, gentle, true, h);
+}
+
+Hypothesis ShortRuns::from(const std::vector<Pose>& pose) const {
+  Hypothesis h;
+  h.number = all_;
+  for (const int i : plain_.which) h.pose.push_back(pose[static_cast<std::size_t>(i)]);
+  h = with_template(plain_, annealing(plain_).centres, std::move(h));
+  settle(h);
   return h;
 }
 

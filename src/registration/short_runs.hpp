@@ -26,11 +26,15 @@ class ShortRuns {
   /// run again.
   void run_until(int count, Progress& progress, Checkpoint& checkpoint, std::vector<Hypothesis>& out) const;
 
+  /// A start from poses of all views (template_from_view) that are meant to be near; expects no strands.
+  Hypothesis from(const std::vector<Pose>& pose) const;
+
   /// What a hypothesis says of all views; identity for those that took no part.
   RoundState state_of(const Hypothesis& h) const;
 
  private:
   Hypothesis run(int number) const;
+  void settle(Hypothesis& h) const;
 
   StartContext thinned_, plain_;
   const Autoencoder* model_;

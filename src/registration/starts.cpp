@@ -55,6 +55,16 @@ bool challenge(const Problems& problems, const SearchGrid& grid, const RoundOpti
   return true;
 }
 
+// Keeps what came of the winner where held-out localisations agree.
+void compare(const std::string& name, RoundState state, StartsOutcome& out) {
+  const StartReport report{name, out.winner.held_out, state.held_out, state.held_out > out.winner.held_out};
+  if (report.won) {
+    for (StartReport& other : out.report) other.won = false;
+    out.winner = std::move(state);
+  }
+  out.report.push_back(report);
+}
+
 // Where the winner holds the structure twice, it is registered again from one copy. False: cancelled.
 bool undouble(const Problems& problems, const SearchGrid& grid, const RoundOptions& rounds,
               Progress& progress, Checkpoint& checkpoint, StartsOutcome& out) {
@@ -63,13 +73,23 @@ bool undouble(const Problems& problems, const SearchGrid& grid, const RoundOptio
   if (which.empty()) return true;
   RoundState state = with_one_copy(problem, rounds, which, out.winner);
   if (!run_rounds(problem, grid, rounds, progress, checkpoint, state)) return false;
-  const StartReport report{"one copy", out.winner.held_out, state.held_out,
-                           state.held_out > out.winner.held_out};
-  if (report.won) {
-    for (StartReport& other : out.report) other.won = false;
-    out.winner = std::move(state);
+  compare("one copy", std::move(state), out);
+  return true;
+}
+
+// A winner that expected strands is registered again from its poses without expecting them: its template was
+// kept from weak centres and thinned localisations. False: cancelled.
+bool calm(const Problems& problems, const ShortRuns& runs, const SearchGrid& grid, const RoundOptions& rounds,
+          Progress& progress, Checkpoint& checkpoint, StartsOutcome& out) {
+  if (!out.finished || !out.winner.crowded) return true;
+  PartOfCheckpoint here(checkpoint, "finalist without strands");
+  RoundState state;
+  if (!restore(here, "started", state)) {
+    state = runs.state_of(runs.from(out.winner.pose));
+    keep(here, "started", state);
   }
-  out.report.push_back(report);
+  if (!run_rounds(problems.plain, grid, rounds, progress, here, state)) return false;
+  compare("without strands", std::move(state), out);
   return true;
 }
 
@@ -166,13 +186,14 @@ StartsOutcome compete(const Problems& problems, const Autoencoder* model, const 
     if (alike < kAgreement) continue;
     out.agreement = alike;
     judge(hypotheses, finalists, out);
-    return out;
+    return calm(problems, runs, grid, rounds, progress, checkpoint, out) ? out : StartsOutcome{};
   }
   runs.run_until(runs.all(), progress, checkpoint, hypotheses);
   if (progress.cancelled()) return {};
   rank(hypotheses);
   if (!finalists.add(hypotheses, finalists_for(problems.plain))) return {};
   judge(hypotheses, finalists, out);
+  if (!calm(problems, runs, grid, rounds, progress, checkpoint, out)) return {};
   if (wants(options, "assembled")) {
     PartOfCheckpoint here(checkpoint, "finalist assembled");
     if (!challenge(problems, grid, rounds, progress, here, out)) return {};

@@ -10,6 +10,7 @@
 #include "polar/registration/prepare.hpp"
 #include "polar/registration/register.hpp"
 #include "polar/simulation/simulate.hpp"
+#include "scattered_structure.hpp"
 
 namespace polar {
 namespace {
@@ -49,15 +50,6 @@ TEST(SpanningPoses, leaveUnreachedViewsAtRest) {
   const std::vector<Pose> pose = spanning_poses(4, {joint(truth, 0, 1, 2), joint(truth, 2, 3, 9)});
   EXPECT_LT(disagreement(pose, truth, 0, 1), 1e-9);
   EXPECT_TRUE(pose[2].rotation.isIdentity(0) && pose[3].rotation.isIdentity(0));
-}
-
-// Labels scattered in a ball: no symmetry, and every half of it can be told from every other.
-Structure scattered_structure(int sites) {
-  Structure s;
-  s.site_nm.resize(3, sites);
-  KeyedRandom random(13, 0, 2);
-  for (int k = 0; k < sites; ++k) s.site_nm.col(k) = 100 * std::cbrt(random.uniform()) * random.direction();
-  return s;
 }
 
 TEST(RegisterViews, assemblesHalvesOfParticles) {
