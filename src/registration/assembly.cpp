@@ -5,6 +5,7 @@
 
 #include "polar/core/median.hpp"
 #include "polar/core/rng.hpp"
+#include "polar/core/so3.hpp"
 #include "polar/fusion/maximisation.hpp"
 #include "template_tools.hpp"
 
@@ -47,7 +48,9 @@ std::vector<Pose> spanning_poses(std::size_t views, std::vector<Joint> joints) {
   for (const Joint& j : joints) {  // J. B. Kruskal, Proceedings of the AMS 7, 1956
     const std::size_t stays = group[j.first], moves = group[j.second];
     if (stays == moves) continue;
-    const Pose stays_from_moves = pose[j.first] * j.match.first_from_second * pose[j.second].inverse();
+    Pose stays_from_moves = pose[j.first] * j.match.first_from_second * pose[j.second].inverse();
+    // Else what a match lacks of a rotation doubles each time that its group moves.
+    stays_from_moves.rotation = nearest_rotation(stays_from_moves.rotation);
     for (std::size_t i = 0; i < views; ++i)
       if (group[i] == moves) pose[i] = stays_from_moves * pose[i], group[i] = stays;
   }

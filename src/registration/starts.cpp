@@ -15,6 +15,7 @@ namespace polar {
 namespace {
 
 constexpr int kMostFinalists = 5;
+constexpr double kTie = 0.01;  // a difference in log likelihood that short runs do not tell from none
 constexpr double kFinalistLocalisations =
     130000;  // views x localisations that the finalists may cost together
 // What two random starts share is neither a wrong basin nor two copies, which differ from start to start. A
@@ -142,9 +143,10 @@ void rank(std::vector<Hypothesis>& hypotheses) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
 }
 
-std::size_t finalists_for(const Problem& problem) {
-  return static_cast<std::size_t>(std::clamp(
-      static_cast<int>(kFinalistLocalisations / std::max(1.0, problem.localisations)), 1, kMostFinalists));
+std::size_t finalists_for(const Problem& problem, const std::vector<Hypothesis>& best_first) {
+  const auto affordable = static_cast<int>(kFinalistLocalisations / std::max(1.0, problem.localisations));
+  const bool tie = best_first.size() > 1 && best_first[0].held_out - best_first[1].held_out < kTie;
+  return static_cast<std::size_t>(std::clamp(affordable, tie ? 2 : 1, kMostFinalists));
 }
 
 // Two registrations cost less than the starts that they may save.
@@ -191,7 +193,7 @@ StartsOutcome compete(const Problems& problems, const Autoencoder* model, const 
   runs.run_until(runs.all(), progress, checkpoint, hypotheses);
   if (progress.cancelled()) return {};
   rank(hypotheses);
-  if (!finalists.add(hypotheses, finalists_for(problems.plain))) return {};
+  if (!finalists.add(hypotheses, finalists_for(problems.plain, hypotheses))) return {};
   judge(hypotheses, finalists, out);
   if (!calm(problems, runs, grid, rounds, progress, checkpoint, out)) return {};
   if (wants(options, "assembled")) {

@@ -52,6 +52,23 @@ TEST(SpanningPoses, leaveUnreachedViewsAtRest) {
   EXPECT_TRUE(pose[2].rotation.isIdentity(0) && pose[3].rotation.isIdentity(0));
 }
 
+// Every joint moves the group that has moved before, about the view that has moved most.
+TEST(SpanningPoses, stayRotationsWhereMatchesAreSinglePrecision) {
+  constexpr std::size_t kViews = 50;
+  const std::vector<Pose> truth = random_poses(kViews);
+  std::vector<Joint> joints;
+  for (std::size_t i = 0; i + 1 < kViews; ++i) {
+    joints.push_back(joint(truth, i, kViews - 1, static_cast<double>(i)));
+    Eigen::Matrix3d& rotation = joints.back().match.first_from_second.rotation;
+    rotation = rotation.cast<float>().cast<double>();
+  }
+  const std::vector<Pose> pose = spanning_poses(kViews, joints);
+  for (std::size_t i = 0; i < kViews; ++i) {
+    EXPECT_TRUE((pose[i].rotation * pose[i].rotation.transpose()).isIdentity(1e-6)) << i;
+    EXPECT_LT(disagreement(pose, truth, 0, i), 1e-4) << i;
+  }
+}
+
 TEST(RegisterViews, assemblesHalvesOfParticles) {
   SimulationOptions o;
   o.particles = 16;
