@@ -30,181 +30,180 @@ double score_of_parts(const Problem& problem, const RoundState& state) {
   return held_out_score_of_parts(problem, noise, state);
 }
 
-// Pairs of views have the last word: where they contradict the winner, or there is none, what they say is
-// registered too. Both are then judged as parts. False: cancelled.
-bool challenge(const Problems& problems, const SearchGrid& grid, const RoundOptions& rounds,
-               Progress& progress, Checkpoint& checkpoint, StartsOutcome& out) {
-  const Problem& problem = problems.thinned;
-  RoundState state;
-  if (!restore(checkpoint, "pairs", state)) {
-    const Assembly assembly(problem);
-    if (out.finished && !assembly.contradicts(out.winner.pose)) return true;
-    state = assembly.assembled(rounds, progress);
-    if (progress.cancelled()) return false;
-    keep(checkpoint, "pairs", state);
-  }
-  if (!run_rounds(problem, grid, rounds, progress, checkpoint, state)) return false;
-  StartReport report{"assembled", score_of_parts(problem, state), state.held_out, false};
-  if (!out.finished ||
-      report.held_out_log_likelihood > score_of_parts(problems.of(out.winner.crowded), out.winner)) {
-    for (StartReport& other : out.report) other.won = false;
-    report.won = true;
-    out.winner = std::move(state);
-    out.finished = true;
-  }
-  out.report.push_back(report);
-  return true;
-}
-
-// Keeps what came of the winner where held-out localisations agree.
-void compare(const std::string& name, RoundState state, StartsOutcome& out) {
-  const StartReport report{name, out.winner.held_out, state.held_out, state.held_out > out.winner.held_out};
-  if (report.won) {
-    for (StartReport& other : out.report) other.won = false;
-    out.winner = std::move(state);
-  }
-  out.report.push_back(report);
-}
-
-// Where the winner holds the structure twice, it is registered again from one copy. False: cancelled.
-bool undouble(const Problems& problems, const SearchGrid& grid, const RoundOptions& rounds,
-              Progress& progress, Checkpoint& checkpoint, StartsOutcome& out) {
-  const Problem& problem = problems.of(out.winner.crowded);
-  const std::vector<int> which = views_of_one_copy(problem, out.winner);
-  if (which.empty()) return true;
-  RoundState state = with_one_copy(problem, rounds, which, out.winner);
-  if (!run_rounds(problem, grid, rounds, progress, checkpoint, state)) return false;
-  compare("one copy", std::move(state), out);
-  return true;
-}
-
-// A winner that expected strands is registered again from its poses without expecting them: its template was
-// kept from weak centres and thinned localisations. False: cancelled.
-bool calm(const Problems& problems, const ShortRuns& runs, const SearchGrid& grid, const RoundOptions& rounds,
-          Progress& progress, Checkpoint& checkpoint, StartsOutcome& out) {
-  if (!out.finished || !out.winner.crowded) return true;
-  PartOfCheckpoint here(checkpoint, "finalist without strands");
-  RoundState state;
-  if (!restore(here, "started", state)) {
-    state = runs.state_of(runs.from(out.winner.pose));
-    keep(here, "started", state);
-  }
-  if (!run_rounds(problems.plain, grid, rounds, progress, here, state)) return false;
-  compare("without strands", std::move(state), out);
-  return true;
-}
-
-// The starts that are registered on all views, by their number.
-class Finalists {
+// Each step is false where it was cancelled; the checkpoint then holds what was done.
+class Competition {
  public:
-  Finalists(const Problems& problems, const ShortRuns& runs, const SearchGrid& grid,
-            const RoundOptions& rounds, Progress& progress, Checkpoint& checkpoint)
+  Competition(const Problems& problems, const Autoencoder* model, const RegistrationOptions& options,
+              const SearchGrid& grid, const RoundOptions& rounds, Progress& progress, Checkpoint& checkpoint)
       : problems_(problems),
-        runs_(runs),
+        options_(options),
         grid_(grid),
         rounds_(rounds),
         progress_(progress),
-        checkpoint_(checkpoint) {}
+        checkpoint_(checkpoint),
+        runs_(problems, model, options) {}
 
-  /// Registers those that are not yet registered; false: cancelled.
-  bool add(const std::vector<Hypothesis>& best_first, std::size_t most) {
-    for (std::size_t k = 0; k < std::min(most, best_first.size()); ++k)
-      if (state_.count(best_first[k].number) == 0 && !add(best_first[k])) return false;
+  bool run() {
+    if (!run_until_two_agree()) return false;
+    if (out_.agreement > 0) return without_strands();
+    if (!run_until(runs_.all()) || !register_best(finalists())) return false;
+    judge();
+    return without_strands() && ask_pairs() && undouble();
+  }
+  StartsOutcome outcome() { return std::move(out_); }
+
+ private:
+  // Short runs of the first so many starts, ranked.
+  bool run_until(int count) {
+    runs_.run_until(count, progress_, checkpoint_, best_first_);
+    std::stable_sort(best_first_.begin(), best_first_.end(),
+                     [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
+    return !progress_.cancelled();
+  }
+
+  bool registered(const std::string& name, bool crowded, RoundState& state) {
+    PartOfCheckpoint here(checkpoint_, "finalist " + name);
+    if (restore(here, "registered", state)) return true;
+    if (!run_rounds(problems_.of(crowded), grid_, rounds_, progress_, here, state)) return false;
+    keep(here, "registered", state);
     return true;
   }
 
-  bool has(const Hypothesis& h) const { return state_.count(h.number) > 0; }
-  RoundState& of(const Hypothesis& h) { return state_.at(h.number); }
-
- private:
-  bool add(const Hypothesis& h) {
-    PartOfCheckpoint here(checkpoint_, "finalist " + std::to_string(h.number));
-    RoundState state;
-    if (!restore(here, "registered", state)) {
-      state = runs_.state_of(h);
-      if (!run_rounds(problems_.of(h.crowded), grid_, rounds_, progress_, here, state)) return false;
-      keep(here, "registered", state);
+  bool register_best(std::size_t most) {
+    for (std::size_t k = 0; k < std::min(most, best_first_.size()); ++k) {
+      const Hypothesis& h = best_first_[k];
+      if (finalist_.count(h.number) > 0) continue;
+      RoundState state = runs_.state_of(h);
+      if (!registered(std::to_string(h.number), h.crowded, state)) return false;
+      finalist_.emplace(h.number, std::move(state));
     }
-    state_.emplace(h.number, std::move(state));
+    return true;
+  }
+
+  std::size_t finalists() const {
+    const auto affordable =
+        static_cast<int>(kFinalistLocalisations / std::max(1.0, problems_.plain.localisations));
+    const bool tie = best_first_.size() > 1 && best_first_[0].held_out - best_first_[1].held_out < kTie;
+    return static_cast<std::size_t>(std::clamp(affordable, tie ? 2 : 1, kMostFinalists));
+  }
+
+  bool run_until_two_agree() {
+    // Two registrations cost less than the starts that they may save.
+    const bool worth_it =
+        problems_.plain.size() >= kViewsThatAgree && problems_.plain.localisations <= kFinalistLocalisations;
+    for (const int count : {runs_.few_random(), runs_.random()}) {
+      if (!run_until(count)) return false;
+      if (!worth_it || best_first_.size() < 2) continue;
+      if (!register_best(2)) return false;
+      const double alike =
+          agreement(finalist_.at(best_first_[0].number).pose, finalist_.at(best_first_[1].number).pose);
+      if (alike < kAgreement) continue;
+      out_.agreement = alike;
+      judge();
+      return true;
+    }
+    return true;
+  }
+
+  // The best of the registered ones and a report of all.
+  void judge() {
+    for (const Hypothesis& h : best_first_) {
+      const auto found = finalist_.find(h.number);
+      StartReport report{h.name, h.held_out, 0, false};
+      if (found == finalist_.end()) {
+        out_.report.push_back(report);
+        continue;
+      }
+      report.final_held_out_log_likelihood = found->second.held_out;
+      report.won = !out_.finished || found->second.held_out > out_.winner.held_out;
+      enter(report, std::move(found->second));
+    }
+  }
+
+  void enter(const StartReport& report, RoundState state) {
+    if (report.won) {
+      for (StartReport& other : out_.report) other.won = false;
+      out_.winner = std::move(state);
+      out_.finished = true;
+    }
+    out_.report.push_back(report);
+  }
+
+  // What came of the winner, kept where held-out localisations agree.
+  void compare(const std::string& name, RoundState state) {
+    enter({name, out_.winner.held_out, state.held_out, state.held_out > out_.winner.held_out},
+          std::move(state));
+  }
+
+  // A winner that expected strands is registered again from its poses without expecting them: its template
+  // was kept from weak centres and thinned localisations.
+  bool without_strands() {
+    if (!out_.finished || !out_.winner.crowded) return true;
+    RoundState state;
+    PartOfCheckpoint here(checkpoint_, "finalist without strands");
+    if (!restore(here, "started", state)) {
+      state = runs_.state_of(runs_.from(out_.winner.pose));
+      keep(here, "started", state);
+    }
+    if (!registered("without strands", false, state)) return false;
+    compare("without strands", std::move(state));
+    return true;
+  }
+
+  // Pairs of views have the last word: where they contradict the winner, or there is none, what they say is
+  // registered too. Both are then judged as parts.
+  bool ask_pairs() {
+    if (!wants(options_, "assembled")) return true;
+    const Problem& problem = problems_.thinned;
+    PartOfCheckpoint here(checkpoint_, "finalist assembled");
+    RoundState state;
+    if (!restore(here, "pairs", state)) {
+      const Assembly assembly(problem);
+      if (out_.finished && !assembly.contradicts(out_.winner.pose)) return true;
+      state = assembly.assembled(rounds_, progress_);
+      if (progress_.cancelled()) return false;
+      keep(here, "pairs", state);
+    }
+    if (!registered("assembled", true, state)) return false;
+    StartReport report{"assembled", score_of_parts(problem, state), state.held_out, false};
+    report.won = !out_.finished || report.held_out_log_likelihood >
+                                       score_of_parts(problems_.of(out_.winner.crowded), out_.winner);
+    enter(report, std::move(state));
+    return true;
+  }
+
+  // Where the winner holds the structure twice, it is registered again from one copy.
+  bool undouble() {
+    if (!out_.finished) return true;
+    const bool crowded = out_.winner.crowded;
+    const std::vector<int> which = views_of_one_copy(problems_.of(crowded), out_.winner);
+    if (which.empty()) return true;
+    RoundState state = with_one_copy(problems_.of(crowded), rounds_, which, out_.winner);
+    if (!registered("of one copy", crowded, state)) return false;
+    compare("one copy", std::move(state));
     return true;
   }
 
   const Problems& problems_;
-  const ShortRuns& runs_;
+  const RegistrationOptions& options_;
   const SearchGrid& grid_;
   const RoundOptions& rounds_;
   Progress& progress_;
   Checkpoint& checkpoint_;
-  std::map<int, RoundState> state_;
+  const ShortRuns runs_;
+  std::vector<Hypothesis> best_first_;
+  std::map<int, RoundState> finalist_;  // registered on all views, by the number of the hypothesis
+  StartsOutcome out_;
 };
-
-void rank(std::vector<Hypothesis>& hypotheses) {
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
-}
-
-std::size_t finalists_for(const Problem& problem, const std::vector<Hypothesis>& best_first) {
-  const auto affordable = static_cast<int>(kFinalistLocalisations / std::max(1.0, problem.localisations));
-  const bool tie = best_first.size() > 1 && best_first[0].held_out - best_first[1].held_out < kTie;
-  return static_cast<std::size_t>(std::clamp(affordable, tie ? 2 : 1, kMostFinalists));
-}
-
-// Two registrations cost less than the starts that they may save.
-bool may_agree(const Problem& problem) {
-  return problem.size() >= kViewsThatAgree && problem.localisations <= kFinalistLocalisations;
-}
-
-// The best of the registered ones and a report of all.
-void judge(const std::vector<Hypothesis>& best_first, Finalists& finalists, StartsOutcome& out) {
-  const Hypothesis* best = nullptr;
-  for (const Hypothesis& h : best_first) {
-    out.report.push_back({h.name, h.held_out, 0, false});
-    if (!finalists.has(h)) continue;
-    out.report.back().final_held_out_log_likelihood = finalists.of(h).held_out;
-    if (best == nullptr || finalists.of(h).held_out > finalists.of(*best).held_out) best = &h;
-  }
-  out.finished = best != nullptr;
-  if (!out.finished) return;
-  for (StartReport& report : out.report) report.won = report.name == best->name;
-  out.winner = std::move(finalists.of(*best));
-}
 
 }  // namespace
 
 StartsOutcome compete(const Problems& problems, const Autoencoder* model, const RegistrationOptions& options,
                       const SearchGrid& grid, const RoundOptions& rounds, Progress& progress,
                       Checkpoint& checkpoint) {
-  const ShortRuns runs(problems, model, options);
-  Finalists finalists(problems, runs, grid, rounds, progress, checkpoint);
-  std::vector<Hypothesis> hypotheses;
-  StartsOutcome out;
-  for (const int count : {runs.few_random(), runs.random()}) {
-    runs.run_until(count, progress, checkpoint, hypotheses);
-    if (progress.cancelled()) return {};
-    rank(hypotheses);
-    if (hypotheses.size() < 2 || !may_agree(problems.plain)) continue;
-    if (!finalists.add(hypotheses, 2)) return {};
-    const double alike = agreement(finalists.of(hypotheses[0]).pose, finalists.of(hypotheses[1]).pose);
-    if (alike < kAgreement) continue;
-    out.agreement = alike;
-    judge(hypotheses, finalists, out);
-    return calm(problems, runs, grid, rounds, progress, checkpoint, out) ? out : StartsOutcome{};
-  }
-  runs.run_until(runs.all(), progress, checkpoint, hypotheses);
-  if (progress.cancelled()) return {};
-  rank(hypotheses);
-  if (!finalists.add(hypotheses, finalists_for(problems.plain, hypotheses))) return {};
-  judge(hypotheses, finalists, out);
-  if (!calm(problems, runs, grid, rounds, progress, checkpoint, out)) return {};
-  if (wants(options, "assembled")) {
-    PartOfCheckpoint here(checkpoint, "finalist assembled");
-    if (!challenge(problems, grid, rounds, progress, here, out)) return {};
-  }
-  if (out.finished) {
-    PartOfCheckpoint here(checkpoint, "finalist of one copy");
-    if (!undouble(problems, grid, rounds, progress, here, out)) return {};
-  }
-  return out;
+  Competition competition(problems, model, options, grid, rounds, progress, checkpoint);
+  if (!competition.run()) return {};
+  return competition.outcome();
 }
 
 }  // namespace polar
