@@ -9,7 +9,6 @@
 #include "polar/core/so3.hpp"
 #include "polar/registration/prepare.hpp"
 #include "polar/registration/register.hpp"
-#include "polar/simulation/simulate.hpp"
 #include "scattered_structure.hpp"
 #include "site_scene.hpp"
 
@@ -66,14 +65,7 @@ TEST(RegisterViews, endsTheCompetitionWhereRandomStartsAgree) {
 }
 
 TEST(RegisterViews, registersAWinnerThatExpectedStrandsOnceMoreWithoutThem) {
-  SimulationOptions o;
-  o.particles = 16;
-  o.sampling = "points";
-  o.points = {400, 400};
-  o.sigma_xy_nm = {2, 2};
-  o.sigma_z_factor = {1, 1};
-  o.label_size_nm = 0;
-  o.cramer_rao = false;
+  SimulationOptions o = sixteen_particles(400);
   o.outliers = "strands";
   o.outlier_fraction = 0.4;
   const Simulation s = simulate(scattered_structure(80), o);

@@ -9,7 +9,6 @@
 #include "polar/core/so3.hpp"
 #include "polar/registration/prepare.hpp"
 #include "polar/registration/register.hpp"
-#include "polar/simulation/simulate.hpp"
 #include "scattered_structure.hpp"
 
 namespace polar {
@@ -70,15 +69,8 @@ TEST(SpanningPoses, stayRotationsWhereMatchesAreSinglePrecision) {
 }
 
 TEST(RegisterViews, assemblesHalvesOfParticles) {
-  SimulationOptions o;
-  o.particles = 16;
-  o.sampling = "points";
-  o.points = {800, 800};
+  SimulationOptions o = sixteen_particles(800);
   o.visibility = {0.5, 0.5};
-  o.sigma_xy_nm = {2, 2};
-  o.sigma_z_factor = {1, 1};
-  o.label_size_nm = 0;
-  o.cramer_rao = false;
   const Simulation s = simulate(scattered_structure(80), o);
   const Views views = prepare_views(smlm::group_particles(s.table));
   RegistrationOptions options;
