@@ -92,6 +92,7 @@ class Competition {
     const bool worth_it =
         problems_.plain.size() >= kViewsThatAgree && problems_.plain.localisations <= kFinalistLocalisations;
     for (const int count : {runs_.few_random(), runs_.random()}) {
+      if (count == static_cast<int>(best_first_.size())) break;  // all of them were few
       if (!run_until(count)) return false;
       if (!worth_it || best_first_.size() < 2) continue;
       if (!register_best(2)) return false;
@@ -129,10 +130,12 @@ class Competition {
     out_.report.push_back(report);
   }
 
-  // What came of the winner, kept where held-out localisations agree.
-  void compare(const std::string& name, RoundState state) {
+  // Registers what came of the winner, and keeps it where held-out localisations agree.
+  bool once_more(const std::string& name, bool crowded, RoundState state) {
+    if (!registered(name, crowded, state)) return false;
     enter({name, out_.winner.held_out, state.held_out, state.held_out > out_.winner.held_out},
           std::move(state));
+    return true;
   }
 
   // A winner that expected strands is registered again from its poses without expecting them: its template
@@ -145,9 +148,7 @@ class Competition {
       state = runs_.state_of(runs_.from(out_.winner.pose));
       keep(here, "started", state);
     }
-    if (!registered("without strands", false, state)) return false;
-    compare("without strands", std::move(state));
-    return true;
+    return once_more("without strands", false, std::move(state));
   }
 
   // Pairs of views have the last word: where they contradict the winner, or there is none, what they say is
@@ -178,10 +179,7 @@ class Competition {
     const bool crowded = out_.winner.crowded;
     const std::vector<int> which = views_of_one_copy(problems_.of(crowded), out_.winner);
     if (which.empty()) return true;
-    RoundState state = with_one_copy(problems_.of(crowded), rounds_, which, out_.winner);
-    if (!registered("of one copy", crowded, state)) return false;
-    compare("one copy", std::move(state));
-    return true;
+    return once_more("one copy", crowded, with_one_copy(problems_.of(crowded), rounds_, which, out_.winner));
   }
 
   const Problems& problems_;
