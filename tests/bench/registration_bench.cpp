@@ -192,20 +192,35 @@ void hard_case(const Shape& shape, const Structure& structure, const Case& c, st
   std::fflush(stdout);
 }
 
+void print_sample_row(const std::string& group, const std::string& search, std::uint64_t seed,
+                      const Outcome& o) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("| %s | %s | %llu | %.4f | %.4f | %.4f | %.2f | %s | %.1f | %.1f | %.0f |\n", group.c_str(),
+              search.c_str(), static_cast<unsigned long long>(seed), o.comparison.recall[0],
+              o.comparison.recall[1], o.comparison.recall[2], o.comparison.median_pair_deg,
+              o.winner().c_str(), o.seconds, o.processor_seconds,
+              static_cast<double>(usage.ru_maxrss) / 1024);
+  std::fflush(stdout);
+}
+
+/// With `then_likelihood` a second row: the default registration by likelihood from the poses of the first.
 void sample_case(const std::string& path, const std::string& group, std::uint64_t first_seed,
-                 std::uint64_t seeds, std::size_t most_views, RegistrationOptions options) {
+                 std::uint64_t seeds, std::size_t most_views, bool then_likelihood,
+                 RegistrationOptions options) {
   const Task task = sampled(path, group, most_views);
   Progress silent;
   for (options.seed = first_seed; options.seed <= seeds; ++options.seed) {
     const Outcome o = measured(task, [&](const Views& v) { return register_views(v, options, silent); });
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    std::printf("| %s | %s | %llu | %.4f | %.4f | %.4f | %.2f | %s | %.1f | %.1f | %.0f |\n", group.c_str(),
-                options.search.c_str(), static_cast<unsigned long long>(options.seed), o.comparison.recall[0],
-                o.comparison.recall[1], o.comparison.recall[2], o.comparison.median_pair_deg,
-                o.winner().c_str(), o.seconds, o.processor_seconds,
-                static_cast<double>(usage.ru_maxrss) / 1024);
-    std::fflush(stdout);
+    print_sample_row(group, options.search, options.seed, o);
+    if (!then_likelihood) continue;
+    RegistrationOptions likelihood;
+    likelihood.seed = options.seed;
+    std::vector<Pose> poses;
+    for (const RegisteredView& view : o.registration.view) poses.push_back(view.template_from_view);
+    const Outcome after =
+        measured(task, [&](const Views& v) { return register_from(v, poses, likelihood, silent); });
+    print_sample_row(group, "then likelihood", options.seed, after);
   }
 }
 
@@ -223,6 +238,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> shapes, cases;
   std::uint64_t first_seed = 1, seeds = 3, draw = 1;
   std::size_t most_views = 100;
+  bool then_likelihood = false;
   RegistrationOptions options;
   app.add_option("folder", folder, "folder of princeton_shape_benchmark_dev.h5");
   app.add_option("--sample", sample, "polar_sample.h5: its two groups");
@@ -246,6 +262,8 @@ int main(int argc, char** argv) {
   app.add_option("--matched", options.latent.matched_counts, "as many template points as localisations");
   app.add_option("--loops", options.latent.most_loops, "of the latent registration");
   app.add_option("--views", most_views, "of each group of the sample, at most");
+  app.add_flag("--then-likelihood", then_likelihood,
+               "and the likelihood from the poses found, of the sample");
   CLI11_PARSE(app, argc, argv);
   try {
     const std::vector<std::string> faults = violations(options);
@@ -256,7 +274,8 @@ int main(int argc, char** argv) {
           "| s | processor s | peak MiB |");
       std::puts("|---|---|---|---|---|---|---|---|---|---|---|");
       for (const char* group : {"anisotropy", "cropped_noisy"})
-        if (chosen(cases, group)) sample_case(sample, group, first_seed, seeds, most_views, options);
+        if (chosen(cases, group))
+          sample_case(sample, group, first_seed, seeds, most_views, then_likelihood, options);
     }
     if (folder.empty()) return 0;
     std::puts(
