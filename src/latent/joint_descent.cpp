@@ -10,13 +10,11 @@ namespace polar {
 namespace {
 
 constexpr std::size_t kBlock = 4;  // views a task
-constexpr double kRate = 1e-2;     // of z at first (paper IV.C)
+constexpr double kRate = 1e-2;     // of z at first
 constexpr double kDecay = 1e-2;    // AdamW's usual weight decay, of z; a pose has no origin to decay to
 // Second-order poses settle in a few steps, so z need not wait as long for its plateau as in the paper.
 constexpr double kFactor = 0.3, kTolerance = 1e-3;
 constexpr int kPatience = 4, kStopAfter = 12;
-constexpr double kPaperFactor = 0.1;
-constexpr int kPaperPatience = 10, kPaperStopAfter = 100;
 constexpr double kPaperViews = 100;
 constexpr double kWorse = 1.05;  // a view's loss may rise so much, because the template moves too
 constexpr double kFirstDamping = 1e-1, kLeastDamping = 1e-3, kMostDamping = 1e3;
@@ -55,8 +53,7 @@ int descend_jointly(const Autoencoder& model, const LatentViews& views, const La
                     int most_steps, Progress& progress, JointState& state) {
   const bool paper = options.optimizer == "adamw";
   const std::size_t n = views.view.size();
-  Plateau plateau = paper ? Plateau(kRate, kPaperFactor, kPaperPatience, kPaperStopAfter, 0)
-                          : Plateau(kRate, kFactor, kPatience, kStopAfter, kTolerance);
+  Plateau plateau = paper ? paper_plateau() : Plateau(kRate, kFactor, kPatience, kStopAfter, kTolerance);
   // The loss is a sum over views, and the paper's lambda stands beside 100 of them.
   const double lambda = options.regularisation * static_cast<double>(n) / kPaperViews;
   AdamW adam(state.z.size());

@@ -13,9 +13,6 @@ constexpr double kBeta1 = 0.9, kBeta2 = 0.999, kEpsilon = 1e-8;  // of Adam, the
 constexpr double kFirstDamping = 1e-2, kMostDamping = 1e3;
 constexpr double kLongestTurn = 0.4, kLongestShift = 0.25;  // rad, radii: where linearising is trusted
 constexpr double kGain = 1e-3;  // relative: a step that gains less ends Levenberg-Marquardt
-constexpr double kRate = 1e-2;  // AdamW, plateau: paper IV.C
-constexpr double kFactor = 0.1;
-constexpr int kPatience = 10, kStopAfter = 100;
 
 Vector6d free_part(Vector6d v, bool planar) {
   if (planar) v[0] = v[1] = v[5] = 0;
@@ -50,7 +47,7 @@ DescendedPose adamw(const Autoencoder& model, const LatentView& view, bool plana
   DescendedPose best{start, 1e300, 0};
   Pose pose = start;
   AdamW adam(6);
-  Plateau plateau(kRate, kFactor, kPatience, kStopAfter, 0);
+  Plateau plateau = paper_plateau();
   while (best.evaluations < most && !plateau.over()) {
     const LossTerm term = view_loss(model, view, points, pose, Derive::pose);
     ++best.evaluations;
