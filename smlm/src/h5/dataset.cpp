@@ -139,6 +139,8 @@ Handle File::State::open_dataset(const std::string& dataset) const {
   const std::uint64_t bytes = saturating_product(described.elements(), H5Tget_size(type.get()));
   switch (H5Pget_layout(properties.get())) {
     case H5D_COMPACT:
+      if (bytes > H5Dget_storage_size(object.get()))  // HDF5 1.10 would read beyond its buffer
+        fail_input(dataset, "claims more bytes than it stores (damaged?)", "copy the file again");
       break;
     case H5D_CONTIGUOUS:
       if (!writable && bytes > file_bytes && H5Dget_storage_size(object.get()) > 0) {

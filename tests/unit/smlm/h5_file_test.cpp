@@ -85,6 +85,29 @@ TEST_F(H5FileTest, FieldsOfImpossibleTypesAreRefused) {
   EXPECT_THAT(test::error_of([&] { with_byte(47, 23, 90); }).what(), HasSubstr("of a damaged type"));
 }
 
+// Found by fuzzing: HDF5 1.10 reads as many bytes as the shape wants, whatever is there.
+TEST_F(H5FileTest, ACompactDataSetThatIsSmallerThanItsShapeIsRefused) {
+  const std::string extent("\x4d\0\0\0\0\0\0\0", 8);  // 77, in the object's header
+  {
+    const hid_t file = H5Fcreate(path("t.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hsize_t length = 77;
+    const hid_t space = H5Screate_simple(1, &length, nullptr), layout = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_layout(layout, H5D_COMPACT);
+    const hid_t data = H5Dcreate2(file, "few", H5T_NATIVE_UINT8, space, H5P_DEFAULT, layout, H5P_DEFAULT);
+    const std::vector<std::uint8_t> ones(length, 255);
+    H5Dwrite(data, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, ones.data());
+    H5Dclose(data), H5Pclose(layout), H5Sclose(space), H5Fclose(file);
+  }
+  EXPECT_EQ(File::open(path("t.h5")).read<int>("/few").size(), 77u);
+  std::ifstream in(path("t.h5"), std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  ASSERT_NE(bytes.find(extent), std::string::npos);
+  for (std::size_t at; (at = bytes.find(extent)) != std::string::npos;) bytes[at] = 99;
+  write("t.h5", bytes);
+  EXPECT_THAT(test::error_of([&] { File::open(path("t.h5")).read<int>("/few"); }).what(),
+              HasSubstr("claims more bytes than it stores"));
+}
+
 // ParaView 5.11 refuses VTKHDF files whose Type is of variable length, UTF-8 or one byte longer.
 TEST_F(H5FileTest, StringAttributesAreFixedAsciiWithoutATerminator) {
   {
