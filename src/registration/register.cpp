@@ -242,7 +242,9 @@ Registration register_from(const Views& views, const std::vector<Pose>& template
   check_planar(views, options);
   Checkpoint nothing;
   Run run(views, options, progress, nothing);
-  RoundState state = state_at(run.problems.thinned, run.rounds, template_from_view);
+  RoundState state;
+  state.pose = template_from_view;
+  fuse_anew(run.problems.thinned, run.rounds, run.problems.thinned.all, state);
   if (!run_rounds(run.problems.thinned, run.grid, run.rounds, progress, nothing, state))
     return cancelled(run);
   run.timed("rounds");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "jury.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/search_again.hpp"
@@ -22,15 +23,18 @@ constexpr int kGivenSweeps = 8;
 constexpr double kMisfits = 0.1;  // share of the views
 constexpr const char* kUnderWay = "rounds";
 
-void sweep(const Problem& problem, const Subsets& few, const NoiseModel& noise, int sweeps, int round,
-           RoundState& state) {
-  const FusionData data(problem.views, problem.axes, noise, few);
+// Template and poses of the views `which`; the others are as they were.
+void sweep(const Problem& problem, const Subsets& few, const std::vector<int>& which, const NoiseModel& noise,
+           int sweeps, int round, RoundState& state) {
+  const FusionData data(problem.views, problem.axes, noise, few, which);
+  std::vector<Pose> pose = poses_of(state, which);
   for (int s = 0; s < sweeps; ++s) {
     MaximisationOptions em = fusion_options(state.crowded, noise.width);
     em.seed = problem.seed + static_cast<std::uint64_t>(100 * round + s);
-    maximise(state.mixture, data, state.pose, em);
-    if (s > 0) refine_poses(state.mixture, data, state.pose, 2);
+    maximise(state.mixture, data, pose, em);
+    if (s > 0) refine_poses(state.mixture, data, pose, 2);
   }
+  for (std::size_t k = 0; k < which.size(); ++k) state.pose[static_cast<std::size_t>(which[k])] = pose[k];
 }
 
 // `far`: with shifts as large as the structure.
@@ -63,18 +67,17 @@ int centres_for(const Problem& problem) {
   return std::clamp(std::max(few, usual), kFewestCentres, kMostCentres);
 }
 
-RoundState state_at(const Problem& problem, const RoundOptions& options,
-                    std::vector<Pose> template_from_view) {
-  RoundState state;
-  state.pose = std::move(template_from_view);
+void fuse_anew(const Problem& problem, const RoundOptions& options, const std::vector<int>& which,
+               RoundState& state) {
   const Subsets few = first_of(problem.fitted, kSweepLocalisations);
-  state.mixture = scattered_mixture(problem, few, problem.all, state.pose, centres_for(problem), 1);
+  state.mixture = scattered_mixture(problem, few, which, poses_of(state, which), centres_for(problem), 1);
   state.mixture.outlier_fraction = first_outlier_fraction(state.crowded);
+  state.width = 0;
+  state.held_out = -1e300;
   NoiseModel noise;
   noise.planar = problem.planar();
   noise.width = options.first_width;
-  sweep(problem, few, noise, kGivenSweeps, 0, state);
-  return state;
+  sweep(problem, few, which, noise, kGivenSweeps, 0, state);
 }
 
 std::vector<std::size_t> search_all(const Problem& problem, const SearchGrid& grid,
@@ -129,7 +132,7 @@ bool run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptio
       at.mixture = scattered_mixture(problem, few, problem.all, at.pose, centres_for(problem), 1);
       at.mixture.outlier_fraction = std::max(outliers, first_outlier_fraction(at.crowded));
     }
-    sweep(problem, few, noise, options.sweeps, round, at);
+    sweep(problem, few, problem.all, noise, options.sweeps, round, at);
     at.width = noise.width;
     at.held_out = held_out_score(problem, at.mixture, at.pose, noise);
     if (at.held_out > best.held_out)

@@ -50,9 +50,9 @@ struct RoundState {
 /// Number of centres for so many localisations: enough for a surface, few enough to be determined.
 int centres_for(const Problem& problem);
 
-/// A template fitted to poses that are given, at the first round's width.
-RoundState state_at(const Problem& problem, const RoundOptions& options,
-                    std::vector<Pose> template_from_view);
+/// A template of the views `which` alone, fitted to their poses at the first round's width.
+void fuse_anew(const Problem& problem, const RoundOptions& options, const std::vector<int>& which,
+               RoundState& state);
 
 /// One FLAMES over all views under the present template; looks at the first few of `subset` of each view.
 /// Returns the views that escaped.

@@ -185,7 +185,9 @@ class Competition {
     const bool crowded = out_.winner.crowded;
     const std::vector<int> which = views_of_one_copy(problems_.of(crowded), out_.winner);
     if (which.empty()) return true;
-    return once_more("one copy", crowded, with_one_copy(problems_.of(crowded), rounds_, which, out_.winner));
+    RoundState state = out_.winner;
+    fuse_anew(problems_.of(crowded), rounds_, which, state);
+    return once_more("one copy", crowded, std::move(state));
   }
 
   const Problems& problems_;

@@ -2,7 +2,6 @@
 
 #include "jury.hpp"
 #include "polar/core/rng.hpp"
-#include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/occupancy.hpp"
 #include "template_tools.hpp"
 
@@ -14,7 +13,7 @@ constexpr std::size_t kLocalisations = 200;  // of a view
 constexpr double kStrength = 1;              // of the occupancy's prior
 constexpr double kTwoGroups =
     1.5;  // kurtosis: 1 for two equal groups, 1.8 for an even spread, 3 for a normal one
-constexpr int kIterations = 60, kSweeps = 8;
+constexpr int kIterations = 60;
 constexpr std::uint32_t kVectorStage = 37;
 
 // Where views differ most in the centres they show: the first principal component, one number a view.
@@ -52,27 +51,6 @@ std::vector<int> views_of_one_copy(const Problem& problem, const RoundState& sta
   std::vector<int> out;
   for (Eigen::Index i = 0; i < u.size(); ++i)
     if ((u[i] > 0) == positive) out.push_back(static_cast<int>(i));
-  return out;
-}
-
-RoundState with_one_copy(const Problem& problem, const RoundOptions& options, const std::vector<int>& which,
-                         const RoundState& state) {
-  RoundState out = state;
-  const Subsets few = first_of(problem.fitted, kLocalisations);
-  const std::vector<Pose> pose = poses_of(state, which);
-  out.mixture = scattered_mixture(problem, few, which, pose, centres_for(problem), 1);
-  out.mixture.outlier_fraction = first_outlier_fraction(state.crowded);
-  NoiseModel noise;
-  noise.planar = problem.planar();
-  noise.width = options.first_width;
-  const FusionData data(problem.views, problem.axes, noise, few, which);
-  MaximisationOptions em = fusion_options(state.crowded, noise.width);
-  for (int s = 0; s < kSweeps; ++s) {
-    em.seed = problem.seed + static_cast<std::uint64_t>(s);
-    maximise(out.mixture, data, pose, em);
-  }
-  out.width = 0;
-  out.held_out = -1e300;
   return out;
 }
 

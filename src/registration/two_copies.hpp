@@ -12,9 +12,4 @@ namespace polar {
 /// show; else none.
 std::vector<int> views_of_one_copy(const Problem& problem, const RoundState& state);
 
-/// The state without all but one copy: a template of these views alone, from which run_rounds finds the
-/// others.
-RoundState with_one_copy(const Problem& problem, const RoundOptions& options, const std::vector<int>& which,
-                         const RoundState& state);
-
 }  // namespace polar

@@ -40,7 +40,9 @@ double held_out(const Problem& problem, const RoundState& state, const NoiseMode
 TEST(CalibrateAndFuse, stopsBeforeATemplateOfFewLocalisationsClumps) {
   const Sphere sphere;
   const Problems problems = make_problems(sphere.views, 1);
-  const RoundState first = state_at(problems.thinned, RoundOptions{}, sphere.pose);
+  RoundState first;
+  first.pose = sphere.pose;
+  fuse_anew(problems.thinned, RoundOptions{}, problems.thinned.all, first);
   NoiseModel noise;
   noise.width = 0.09;
   RoundState state = first;

@@ -101,9 +101,10 @@ Symmetry detected(const Eigen::Matrix3Xd& sites, const Pose& frame, bool planar 
 
 TEST(AgreementModuloSymmetry, countsViewsThatTheGroupTurned) {
   const Registered r(structure("C4", 5, 3), Pose{}, 3);
+  const auto about_z = [](double angle) { return Pose{so3_exp({0, 0, angle}), Eigen::Vector3d::Zero()}; };
   std::vector<Pose> other = r.state.pose;
-  for (std::size_t i = 0; i < other.size(); i += 2) other[i] = Pose{so3_exp({0, 0, kPi / 2}), {}} * other[i];
-  other[0] = Pose{so3_exp({0, 0, kPi / 4}), {}} * r.state.pose[0];
+  for (std::size_t i = 0; i < other.size(); i += 2) other[i] = about_z(kPi / 2) * other[i];
+  other[0] = about_z(kPi / 4) * r.state.pose[0];
   const Pose elsewhere{so3_exp({0.4, -0.2, 0.3}), {0.1, 0.2, 0.3}};
   for (Pose& pose : other) pose = elsewhere * pose;
   EXPECT_DOUBLE_EQ(agreement(r.state.pose, other), 0.5);

@@ -60,8 +60,8 @@ TEST(TwoCopies, roundsFromOneCopyBringAllViewsTogether) {
   Doubled scene;
   const Problems problems = make_problems(scene.views, 1);
   const RoundOptions options;
-  RoundState state =
-      with_one_copy(problems.plain, options, views_of_one_copy(problems.plain, scene.state), scene.state);
+  RoundState state = scene.state;
+  fuse_anew(problems.plain, options, views_of_one_copy(problems.plain, scene.state), state);
   Progress silent;
   Checkpoint nothing;
   ASSERT_TRUE(
