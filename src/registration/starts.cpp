@@ -45,7 +45,8 @@ class Competition {
 
   bool run() {
     if (!run_until_two_agree()) return false;
-    if (out_.agreement > 0) return without_strands() && undouble();
+    // Two copies turned by the group that was stated count as agreement.
+    if (out_.agreement > 0) return without_strands() && (!imposes_symmetry(options_) || undouble());
     if (!run_until(runs_.all()) || !register_best(finalists())) return false;
     judge();
     return without_strands() && ask_pairs() && undouble();
