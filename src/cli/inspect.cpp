@@ -30,6 +30,8 @@ int run(const Arguments& a) {
     const RunConfig config = load_run_config(files[0], a.overrides);
     files = config.files;
     read = config.read;
+  } else {
+    read = with_overrides(read, a.overrides);
   }
   const smlm::Inspection inspection = smlm::inspect(smlm::read_tables(files, read));
   std::printf("%s\n", (a.json ? smlm::to_json(inspection) : smlm::to_text(inspection)).c_str());
@@ -44,7 +46,7 @@ void add_inspect(CLI::App& app, Action& action) {
   sub->add_option("files", a->files,
                   "tables, or one run configuration whose input section says how to read them")
       ->required();
-  sub->add_option("--set", a->overrides, "section.key=value, wins over the configuration");
+  sub->add_option("--set", a->overrides, "input.key=value, wins over the configuration");
   sub->add_option("--format", a->read.format, "reader; default: by content");
   sub->add_option("--pixel-size-nm", a->read.pixel_size_nm, "camera pixel, nm");
   sub->add_flag("--one-per-file", "every file is a particle")->each([a](const std::string&) {

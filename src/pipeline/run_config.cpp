@@ -115,6 +115,24 @@ RunConfig load_run_config(const std::string& path, const std::vector<std::string
   return config;
 }
 
+smlm::ReadOptions with_overrides(const smlm::ReadOptions& options,
+                                 const std::vector<std::string>& overrides) {
+  const std::string where = "--set";
+  pipeline::Node root;
+  root.kind = pipeline::Node::Kind::map;
+  for (const std::string& assignment : overrides) pipeline::apply_override(root, assignment);
+  RunConfig config;
+  config.read = options;
+  pipeline::FieldReader reader(root, where);
+  fields(reader, config);
+  reader.finish();
+  std::vector<std::string> faults;
+  if (!config.files.empty()) faults.emplace_back("input.files: the tables are named as arguments");
+  for (const std::string& v : violations(config.read)) faults.push_back("input." + v);
+  smlm::throw_if_any(faults, smlm::Fault::usage, where);
+  return config.read;
+}
+
 std::string run_config_text(const RunConfig& config) {
   RunConfig copy = config;
   pipeline::FieldWriter writer;

@@ -39,6 +39,16 @@ class Usage(PolarCase):
         self.fails(2, "occurs twice", "run", self.run_config(more="output: {voxel_nm: 1, voxel_nm: 2}\n"))
         self.fails(2, "registration.seed", "run", self.run_config(more="registration: {seed: -3}\n"))
 
+    def test_inspect_reads_a_table_with_overrides(self):
+        rows = "".join(f"{i},{2 * i},{i % 2}\n" for i in range(20))
+        table = self.write("pixels.csv", "x,y,particle\n" + rows)
+        pixels = ("--set", "input.unit=pixel")
+        self.fails(3, "set input.pixel_size_nm", "inspect", table, *pixels)
+        said = json.loads(self.ok("inspect", table, *pixels, "--set", "input.pixel_size_nm=100", "--json"))
+        self.assertEqual([c["maximum"] for c in said["columns"] if c["name"] == "x"], [1900])
+        self.fails(2, "input.pixelsize", "inspect", table, "--set", "input.pixelsize=100")
+        self.fails(2, "named as arguments", "inspect", table, "--set", "input.files=other.csv")
+
 
 class BadInput(PolarCase):
     def refused(self, content, part, more=""):
