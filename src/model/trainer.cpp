@@ -13,6 +13,7 @@
 #include "polar/model/shapes.hpp"
 #include "polar/model/weights_file.hpp"
 #include "smlm/error.hpp"
+#include "smlm/isolation.hpp"
 
 namespace polar {
 
@@ -58,7 +59,8 @@ TrainState first_state(const TrainOptions& options, const ShapeSet& shapes) {
   if (options.initial_weights.empty()) return state;
   std::vector<TrainingCloud> batch(kStatisticsClouds);
   draw(options, shapes, kStatisticsItem, batch);
-  start_from(read_weights(options.initial_weights).weights, batch, state);
+  const std::string& path = options.initial_weights;
+  start_from(smlm::read_isolated(path, [&] { return read_weights(path); }).weights, batch, state);
   return state;
 }
 }  // namespace
