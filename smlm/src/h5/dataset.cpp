@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "chunk_layout.hpp"
 #include "handle.hpp"
 #include "stored_type.hpp"
 
@@ -75,12 +76,37 @@ void check_filters(const File::State& state, const std::string& dataset, hid_t p
   }
 }
 
+// Text of variable length has another size in the file than in memory.
+void check_element_bytes(const File::State& state, const std::string& dataset, hid_t object, hid_t type) {
+  if (state.writable || H5Tdetect_class(type, H5T_VLEN) > 0 || H5Tdetect_class(type, H5T_STRING) > 0) return;
+  const std::uint64_t stored = chunk_element_bytes(state.path, state.file.get(), object);
+  if (stored != 0 && stored != H5Tget_size(type))
+    state.fail_input(dataset, "has elements of another size than its type says (damaged?)",
+                     "copy the file again");
+}
+
 std::uint64_t chunk_bytes(hid_t properties, std::size_t rank, std::uint64_t element_bytes) {
   std::vector<hsize_t> chunk(std::max<std::size_t>(rank, 1));
   if (H5Pget_chunk(properties, static_cast<int>(chunk.size()), chunk.data()) < 0) return 0;
   std::uint64_t bytes = element_bytes;
   for (const hsize_t extent : chunk) bytes = saturating_product(bytes, extent);
   return bytes;
+}
+
+// A chunk of which less is stored than it holds is read beyond its end. Filters make it smaller than that.
+void check_chunks(const File::State& state, const std::string& dataset, hid_t object, hid_t properties,
+                  std::uint64_t bytes_of_one) {
+  if (bytes_of_one > state.limits.max_chunk_bytes)
+    throw Error(Fault::resource, state.path + ":" + dataset, "one chunk is larger than will be unpacked",
+                "write it with chunks of a few MiB");
+  const Handle space(H5Dget_space(object), H5Sclose);
+  hsize_t chunks = 0;
+  if (state.writable || H5Pget_nfilters(properties) != 0 ||
+      H5Dget_num_chunks(object, space.get(), &chunks) < 0)
+    return;
+  if (H5Dget_storage_size(object) < saturating_product(chunks, bytes_of_one))
+    state.fail_input(dataset, "has chunks that are smaller than they claim (damaged?)",
+                     "copy the file again");
 }
 
 }  // namespace
@@ -149,11 +175,9 @@ Handle File::State::open_dataset(const std::string& dataset) const {
       break;
     case H5D_CHUNKED:
       check_filters(*this, dataset, properties.get());
-      if (chunk_bytes(properties.get(), described.shape.size(), H5Tget_size(type.get())) >
-          limits.max_chunk_bytes) {
-        throw Error(Fault::resource, path + ":" + dataset, "one chunk is larger than will be unpacked",
-                    "write it with chunks of a few MiB");
-      }
+      check_element_bytes(*this, dataset, object.get(), type.get());
+      check_chunks(*this, dataset, object.get(), properties.get(),
+                   chunk_bytes(properties.get(), described.shape.size(), H5Tget_size(type.get())));
       break;
     default:
       fail_input(dataset, "is a virtual data set, whose sources are never opened",

@@ -11,6 +11,7 @@
 namespace smlm::h5 {
 namespace {
 
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using H5FileTest = test::TemporaryFolder;
@@ -106,6 +107,34 @@ TEST_F(H5FileTest, ACompactDataSetThatIsSmallerThanItsShapeIsRefused) {
   write("t.h5", bytes);
   EXPECT_THAT(test::error_of([&] { File::open(path("t.h5")).read<int>("/few"); }).what(),
               HasSubstr("claims more bytes than it stores"));
+}
+
+// Found by fuzzing: HDF5 1.10 makes chunks in memory of the size that the layout states, and fills of each as
+// much as its index states.
+TEST_F(H5FileTest, ChunksOfOtherSizesThanTheirElementsNeedAreRefused) {
+  const auto with_byte = [&](const std::string& where, std::size_t position, char value) {
+    const hid_t file = H5Fcreate(path("t.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hsize_t length = 100, chunk = 77;
+    const hid_t space = H5Screate_simple(1, &length, nullptr), layout = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(layout, 1, &chunk);
+    const hid_t data = H5Dcreate2(file, "few", H5T_NATIVE_INT, space, H5P_DEFAULT, layout, H5P_DEFAULT);
+    const std::vector<int> values(length, -1);
+    H5Dwrite(data, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(data), H5Pclose(layout), H5Sclose(space), H5Fclose(file);
+    std::ifstream in(path("t.h5"), std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    bytes.at(bytes.find(where) + position) = value;
+    write("t.h5", bytes);
+    return File::open(path("t.h5")).read<int>("/few");
+  };
+  const std::string layout("\x4d\0\0\0\4\0\0\0", 8);  // 77 elements of 4 bytes
+  const std::string index("\x34\1\0\0\0\0\0\0", 8);   // a chunk of 308 bytes, no filter left out
+  EXPECT_THAT(with_byte(layout, 4, 4), Each(-1));
+  EXPECT_THAT(test::error_of([&] { with_byte(layout, 4, 1); }).what(),
+              HasSubstr("has elements of another size"));
+  EXPECT_THAT(with_byte(index, 0, 0x34), Each(-1));
+  EXPECT_THAT(test::error_of([&] { with_byte(index, 0, 0x21); }).what(),
+              HasSubstr("smaller than they claim"));
 }
 
 // ParaView 5.11 refuses VTKHDF files whose Type is of variable length, UTF-8 or one byte longer.
