@@ -4,6 +4,7 @@
 #include <hdf5.h>
 
 #include <new>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -45,6 +46,7 @@ struct File::State {
   std::uint64_t file_bytes = 0;
   bool writable = false;
   Handle file;
+  mutable std::set<std::string> acceptable;  // data sets of a file that is only read, once looked at
 
   [[noreturn]] void fail_input(const std::string& object, const std::string& what,
                                const std::string& remedy = {}) const {
