@@ -72,6 +72,10 @@ struct Run {
   Registration out;
 };
 
+bool imposes(const RegistrationOptions& options) {
+  return options.symmetry != "none" && options.symmetry != "detect";
+}
+
 Registration cancelled(Run& run) {
   run.out.stopped_because = "cancelled";
   return std::move(run.out);
@@ -90,7 +94,7 @@ bool fuse(Run& run, const RegistrationOptions& options, FusedState& fused) {
   noise = chosen.noise;
   run.timed("centres");
   if (run.progress.cancelled()) return false;
-  if (imposes_symmetry(options)) {
+  if (imposes(options)) {
     run.out.symmetry = impose_symmetry(problem, noise, options.symmetry, state);
     noise = calibrate_and_fuse(problem, 1, noise, state);
     chosen = choose_centres(problem, noise, state);
@@ -119,7 +123,7 @@ bool fuse(Run& run, const RegistrationOptions& options, FusedState& fused) {
 // From a registered template to the result.
 Registration from_state(Run& run, const RegistrationOptions& options, RoundState registered) {
   // What is found about an imposed group is no part of the state: those runs fuse again.
-  const bool kept = !imposes_symmetry(options);
+  const bool kept = !imposes(options);
   FusedState fused;
   if (!kept || !restore(run.checkpoint, "fused", fused)) {
     fused.state = std::move(registered);
@@ -165,7 +169,7 @@ void check_symmetry(const RegistrationOptions& options, std::vector<std::string>
 
 // Only the table tells whether the data are planar.
 void check_planar(const Views& views, const RegistrationOptions& options) {
-  if (views.planar && imposes_symmetry(options) && options.symmetry[0] != 'C')
+  if (views.planar && imposes(options) && options.symmetry[0] != 'C')
     throw smlm::Error(smlm::Fault::usage, "registration.symmetry",
                       "'" + options.symmetry + "' is not a group of planar data", "use none, detect or C<n>");
 }
@@ -194,10 +198,6 @@ std::vector<std::string> violations(const RegistrationOptions& options) {
 
 bool wants(const RegistrationOptions& options, const std::string& start) {
   return std::find(options.starts.begin(), options.starts.end(), start) != options.starts.end();
-}
-
-bool imposes_symmetry(const RegistrationOptions& options) {
-  return options.symmetry != "none" && options.symmetry != "detect";
 }
 
 bool needs_weights(const RegistrationOptions& options) {

@@ -19,7 +19,7 @@ constexpr double kTie = 0.01;  // a difference in log likelihood that short runs
 constexpr double kFinalistLocalisations =
     130000;  // views x localisations that the finalists may cost together
 // What two random starts share is neither a wrong basin nor two copies, which differ from start to start. A
-// symmetric structure agrees only where its symmetry is stated, because its views are turned at will.
+// symmetric structure never agrees so, because its views are turned at will.
 constexpr double kAgreement = 0.95;
 constexpr std::size_t kViewsThatAgree = 10;  // fewer may agree by chance
 
@@ -45,8 +45,7 @@ class Competition {
 
   bool run() {
     if (!run_until_two_agree()) return false;
-    // Two copies turned by the group that was stated count as agreement.
-    if (out_.agreement > 0) return without_strands() && (!imposes_symmetry(options_) || undouble());
+    if (out_.agreement > 0) return without_strands();
     if (!run_until(runs_.all()) || !register_best(finalists())) return false;
     judge();
     return without_strands() && ask_pairs() && undouble();
@@ -98,19 +97,13 @@ class Competition {
       if (!worth_it || best_first_.size() < 2) continue;
       if (!register_best(2)) return false;
       const double alike =
-          alike_share(finalist_.at(best_first_[0].number), finalist_.at(best_first_[1].number));
+          agreement(finalist_.at(best_first_[0].number).pose, finalist_.at(best_first_[1].number).pose);
       if (alike < kAgreement) continue;
       out_.agreement = alike;
       judge();
       return true;
     }
     return true;
-  }
-
-  double alike_share(const RoundState& a, const RoundState& b) const {
-    return imposes_symmetry(options_)
-               ? agreement_modulo_symmetry(a.mixture, problems_.plain.planar(), a.pose, b.pose)
-               : agreement(a.pose, b.pose);
   }
 
   // The best of the registered ones and a report of all.

@@ -30,9 +30,6 @@ std::vector<std::string> violations(const RegistrationOptions& options);
 /// Whether `start` is among those that compete.
 bool wants(const RegistrationOptions& options, const std::string& start);
 
-/// Whether a group is stated: `symmetry` is neither none nor detect.
-bool imposes_symmetry(const RegistrationOptions& options);
-
 /// Whether the autoencoder takes part: as the method or as one of the starts.
 bool needs_weights(const RegistrationOptions& options);
 

@@ -58,8 +58,7 @@ struct Registration {
   Calibration calibration;
   std::vector<StartReport> starts;
   /// Where the two best random starts, each registered on all views, pose 0.95 of the views or more alike (15
-  /// degrees, up to one common rotation and the symmetry that was stated): that share, and no other start was
-  /// run. Else 0.
+  /// degrees, up to one common rotation): that share, and no other start was run. Else 0.
   double agreement = 0;
   std::optional<Symmetry> symmetry;  // where it is asked for
   int rounds = 0;

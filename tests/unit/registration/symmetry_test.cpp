@@ -11,7 +11,6 @@
 #include "polar/core/so3.hpp"
 #include "polar/core/symmetry_group.hpp"
 #include "polar/registration/register.hpp"
-#include "registration/agreement.hpp"
 #include "registration/self_similarity.hpp"
 #include "registration/symmetry_frame.hpp"
 #include "registration/symmetry_stage.hpp"
@@ -97,27 +96,6 @@ Symmetry detected(const Eigen::Matrix3Xd& sites, const Pose& frame, bool planar 
   const Registered r(sites, frame, 11, planar);
   const Problems problems = make_problems(r.views, 1);
   return detect_symmetry(problems.plain, r.noise, r.state);
-}
-
-TEST(AgreementModuloSymmetry, countsViewsThatTheGroupTurned) {
-  const Registered r(structure("C4", 5, 3), Pose{}, 3);
-  const auto about_z = [](double angle) { return Pose{so3_exp({0, 0, angle}), Eigen::Vector3d::Zero()}; };
-  std::vector<Pose> other = r.state.pose;
-  for (std::size_t i = 0; i < other.size(); i += 2) other[i] = about_z(kPi / 2) * other[i];
-  other[0] = about_z(kPi / 4) * r.state.pose[0];
-  const Pose elsewhere{so3_exp({0.4, -0.2, 0.3}), {0.1, 0.2, 0.3}};
-  for (Pose& pose : other) pose = elsewhere * pose;
-  EXPECT_DOUBLE_EQ(agreement(r.state.pose, other), 0.5);
-  EXPECT_DOUBLE_EQ(agreement_modulo_symmetry(r.state.mixture, false, r.state.pose, other), 1 - 1.0 / 40);
-}
-
-TEST(RegisterViews, endsTheCompetitionWhereStartsAgreeUpToTheStatedSymmetry) {
-  const Registered r(structure("C4", 5, 3), Pose{}, 3);
-  RegistrationOptions options;
-  Progress silent;
-  EXPECT_EQ(register_views(r.views, options, silent).agreement, 0);
-  options.symmetry = "C4";
-  EXPECT_GE(register_views(r.views, options, silent).agreement, 0.95);
 }
 
 Pose some_frame(std::uint64_t seed) {
