@@ -1,6 +1,7 @@
 #include "polar/pipeline/run_config.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "config/fields.hpp"
 #include "config/paths.hpp"
@@ -83,10 +84,14 @@ void check_formats(const std::vector<std::string>& formats, std::vector<std::str
   }
 }
 
+void check_input(const smlm::ReadOptions& options, std::vector<std::string>& faults) {
+  for (const std::string& v : violations(options)) faults.push_back("input." + v);
+}
+
 void check(const RunConfig& c, const std::string& path) {
   std::vector<std::string> faults;
   if (c.files.empty()) faults.emplace_back("input.files is missing: list the localisation tables");
-  for (const std::string& v : violations(c.read)) faults.push_back("input." + v);
+  check_input(c.read, faults);
   for (const std::string& v : violations(c.registration)) faults.push_back(v);
   check_formats(c.output.formats, faults);
   if (c.output.resolution != "none" && c.output.resolution != "halves")
@@ -95,15 +100,20 @@ void check(const RunConfig& c, const std::string& path) {
   if (c.output.directory.empty()) faults.emplace_back("output.directory is empty");
   smlm::throw_if_any(faults, smlm::Fault::usage, path);
 }
+
+// Puts what the tree and the overrides say into `config`.
+void read_fields(pipeline::Node root, const std::vector<std::string>& overrides, const std::string& where,
+                 RunConfig& config) {
+  for (const std::string& assignment : overrides) pipeline::apply_override(root, assignment);
+  pipeline::FieldReader reader(root, where);
+  fields(reader, config);
+  reader.finish();
+}
 }  // namespace
 
 RunConfig load_run_config(const std::string& path, const std::vector<std::string>& overrides) {
-  pipeline::Node root = pipeline::load_yaml(path);
-  for (const std::string& assignment : overrides) pipeline::apply_override(root, assignment);
   RunConfig config;
-  pipeline::FieldReader reader(root, path);
-  fields(reader, config);
-  reader.finish();
+  read_fields(pipeline::load_yaml(path), overrides, path, config);
   check(config, path);
   const std::string folder = pipeline::folder_of(path);
   if (!config.read.pick.centres.empty())
@@ -117,19 +127,15 @@ RunConfig load_run_config(const std::string& path, const std::vector<std::string
 
 smlm::ReadOptions with_overrides(const smlm::ReadOptions& options,
                                  const std::vector<std::string>& overrides) {
-  const std::string where = "--set";
-  pipeline::Node root;
-  root.kind = pipeline::Node::Kind::map;
-  for (const std::string& assignment : overrides) pipeline::apply_override(root, assignment);
+  pipeline::Node nothing;
+  nothing.kind = pipeline::Node::Kind::map;
   RunConfig config;
   config.read = options;
-  pipeline::FieldReader reader(root, where);
-  fields(reader, config);
-  reader.finish();
+  read_fields(std::move(nothing), overrides, "--set", config);
   std::vector<std::string> faults;
   if (!config.files.empty()) faults.emplace_back("input.files: the tables are named as arguments");
-  for (const std::string& v : violations(config.read)) faults.push_back("input." + v);
-  smlm::throw_if_any(faults, smlm::Fault::usage, where);
+  check_input(config.read, faults);
+  smlm::throw_if_any(faults, smlm::Fault::usage, "--set");
   return config.read;
 }
 
