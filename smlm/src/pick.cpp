@@ -129,6 +129,7 @@ std::vector<Centre> find_centres(const LocalisationTable& table, const PickOptio
   });
   // A grid over the peaks finds the denser neighbours within two radii.
   std::vector<Centre> candidates;
+  candidates.reserve(peaks.size());
   for (const Peak& peak : peaks) candidates.push_back(peak.centre);
   const Grid neighbours(candidates, 2 * options.radius_nm);
   std::vector<bool> kept(peaks.size(), false);

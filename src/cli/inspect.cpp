@@ -12,7 +12,6 @@ namespace polar::cli {
 namespace {
 struct Arguments {
   std::vector<std::string> files, overrides;
-  smlm::ReadOptions read;
   bool json = false;
 };
 
@@ -25,13 +24,13 @@ bool is_configuration(const std::string& file) {
 
 int run(const Arguments& a) {
   std::vector<std::string> files = a.files;
-  smlm::ReadOptions read = a.read;
+  smlm::ReadOptions read;
   if (files.size() == 1 && is_configuration(files[0])) {
     const RunConfig config = load_run_config(files[0], a.overrides);
     files = config.files;
     read = config.read;
   } else {
-    read = with_overrides(read, a.overrides);
+    read = read_options(a.overrides);
   }
   const smlm::Inspection inspection = smlm::inspect(smlm::read_tables(files, read));
   std::printf("%s\n", (a.json ? smlm::to_json(inspection) : smlm::to_text(inspection)).c_str());
@@ -47,11 +46,15 @@ void add_inspect(CLI::App& app, Action& action) {
                   "tables, or one run configuration whose input section says how to read them")
       ->required();
   sub->add_option("--set", a->overrides, "input.key=value, wins over the configuration");
-  sub->add_option("--format", a->read.format, "reader; default: by content");
-  sub->add_option("--pixel-size-nm", a->read.pixel_size_nm, "camera pixel, nm");
-  sub->add_flag("--one-per-file", "every file is a particle")->each([a](const std::string&) {
-    a->read.particles = "one_per_file";
-  });
+  const auto short_for = [a](const std::string& key) {
+    return [a, key](const std::string& value) { a->overrides.push_back(key + "=" + value); };
+  };
+  sub->add_option_function<std::string>("--format", short_for("input.format"), "reader; default: by content");
+  sub->add_option_function<std::string>("--pixel-size-nm", short_for("input.pixel_size_nm"),
+                                        "camera pixel, nm");
+  sub->add_flag_callback(
+      "--one-per-file", [a] { a->overrides.emplace_back("input.particles=one_per_file"); },
+      "every file is a particle");
   sub->add_flag("--json", a->json, "print JSON");
   sub->callback([a, &action] { action = [a] { return run(*a); }; });
 }

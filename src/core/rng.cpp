@@ -68,7 +68,11 @@ std::uint64_t KeyedRandom::poisson(double mean) {
   if (mean > kLargeMean) return poisson(mean / 2) + poisson(mean / 2);
   const double limit = std::exp(-mean);
   std::uint64_t n = 0;
-  for (double product = uniform(); product > limit; product *= uniform()) ++n;
+  double product = uniform();
+  while (product > limit) {
+    product *= uniform();
+    ++n;
+  }
   return n;
 }
 

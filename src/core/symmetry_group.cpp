@@ -53,6 +53,7 @@ std::vector<Eigen::Matrix3d> symmetry_rotations(const std::string& name) {
   if (name.size() > 1 && (name[0] == 'C' || name[0] == 'D') && fold(name) > 0) {
     std::vector<Eigen::Matrix3d> group;
     const int n = fold(name);
+    group.reserve(2 * static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) group.push_back(so3_exp(2 * kPi * i / n * z));
     if (name[0] == 'D')
       for (int i = 0; i < n; ++i) group.push_back(group[static_cast<std::size_t>(i)] * turn(x, 2));

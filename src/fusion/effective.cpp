@@ -28,7 +28,7 @@ Eigen::Vector3f uncertainty_axis(const View& view, bool planar) {
   for (const Symmetric3& c : view.covariance)
     mean += matrix(c) / std::max(c[0] + c[3] + c[5], kSmallestVariance);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(mean);
-  const Eigen::Vector3f v = eigen.eigenvalues();
+  const Eigen::Vector3f& v = eigen.eigenvalues();
   if (v[2] < kNearlyIsotropic * kNearlyIsotropic * v[0]) return Eigen::Vector3f::UnitZ();
   const bool prolate = v[2] * v[0] > v[1] * v[1];
   return eigen.eigenvectors().col(prolate ? 2 : 0);

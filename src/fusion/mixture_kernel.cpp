@@ -138,8 +138,9 @@ void add_gaussian(float* volume, const int* dim, const VoxelGaussian& g) {
       const Span chord = span_of(middle[y] - length, middle[y] + length, dim[0]);
       if (chord.first > chord.last) continue;
       const int base = static_cast<int>(middle[y]) - (middle[y] < 0.0f ? 1 : 0);
-      const int phase =
-          static_cast<int>((middle[y] - static_cast<float>(base)) * static_cast<float>(g.phases) + 0.5f);
+      const float fraction = middle[y] - static_cast<float>(base);
+      // NOLINTNEXTLINE(bugprone-incorrect-roundings): it is not negative, and lround would need a header
+      const int phase = static_cast<int>(fraction * static_cast<float>(g.phases) + 0.5f);
       const float* profile = g.profile + phase * g.stride + g.lead - base;
       float* row = volume + (z * dim[1] + y) * dim[0];
       for (int k = chord.first; k <= chord.last; k += kLanes) {

@@ -13,6 +13,7 @@ constexpr float kMargin = 0.01f;    // of the extent along the direction: the no
 
 std::vector<Eigen::Vector3f> spread_directions() {
   std::vector<Eigen::Vector3f> out;
+  out.reserve(kDirections);
   for (int i = 0; i < kDirections; ++i)
     out.push_back(spiral_direction<float>(i, kDirections, Spiral::sphere));
   return out;

@@ -79,6 +79,7 @@ std::vector<Coarse> coarse(const Autoencoder& model, const LatentViews& views, c
     out[k] = {std::vector<float>(rotations, INFINITY), std::vector<std::uint8_t>(rotations), w.centre};
   });
   std::vector<Eigen::Matrix3Xf> noise;
+  noise.reserve(n);
   for (const Crop& v : versions) noise.push_back(columns(c.noise, v.kept));
   for (std::size_t first = 0; first < rotations * n; first += kTile) {
     const std::size_t tile = std::min(kTile, rotations * n - first);

@@ -39,8 +39,9 @@ std::vector<std::vector<Minimum>> Multistart::minima(const LatentViews& views, c
 }
 
 std::vector<DescendedPose> Multistart::descended(const LatentView& view, const Eigen::Matrix3Xf& points,
-                                                 std::vector<Pose> starts) const {
+                                                 const std::vector<Pose>& starts) const {
   std::vector<DescendedPose> found;
+  found.reserve(starts.size());
   const auto descend = [&](const Pose& start, int evaluations) {
     return descend_pose(model_, view, planar_, points, start, options_, evaluations);
   };
@@ -62,9 +63,10 @@ std::vector<int> Multistart::improve(const LatentViews& views, const Eigen::Matr
     const auto i = static_cast<std::size_t>(which[k]);
     if (progress_.cancelled()) return;
     std::vector<Pose> starts;
+    starts.reserve(candidates[i].size() + 1);
     for (const Minimum& m : candidates[i]) starts.push_back(m.view_from_template);
     if (present_too) starts.push_back(state.view_from_template[i]);
-    moved[k] = update(i, descended(views.view[i], points, std::move(starts)), state) ? 1 : 0;
+    moved[k] = update(i, descended(views.view[i], points, starts), state) ? 1 : 0;
   });
   std::vector<int> escaped;
   for (std::size_t k = 0; k < which.size(); ++k)

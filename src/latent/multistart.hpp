@@ -29,7 +29,7 @@ class Multistart {
 
  private:
   std::vector<DescendedPose> descended(const LatentView& view, const Eigen::Matrix3Xf& points,
-                                       std::vector<Pose> starts) const;
+                                       const std::vector<Pose>& starts) const;
   bool update(std::size_t i, const std::vector<DescendedPose>& found, PosedViews& state);
 
   const Autoencoder& model_;

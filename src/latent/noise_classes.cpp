@@ -92,6 +92,7 @@ void draw_class(const LatentViews& views, NoiseClass& c) {
 std::vector<NoiseClass> noise_classes(const LatentViews& views, const LatentOptions& options) {
   const std::vector<int> owner = with_localisations(views);
   std::vector<Feature> features;
+  features.reserve(owner.size());
   for (const int i : owner) features.push_back(feature_of(views.view[static_cast<std::size_t>(i)]));
   if (features.empty()) return {};
   const std::vector<Feature> centre =

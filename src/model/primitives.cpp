@@ -136,7 +136,7 @@ Part random_tube(KeyedRandom& random) {
 Part site_clusters(std::vector<Vector3d> sites, double label_size) {
   const double weight = static_cast<double>(sites.size());
   return {weight, [sites = std::move(sites), label_size](KeyedRandom& r) {
-            const Vector3d site = sites[r.below(sites.size())];
+            const Vector3d& site = sites[r.below(sites.size())];
             const double x = r.normal(), y = r.normal(), z = r.normal();
             return Vector3d(site + label_size * Vector3d(x, y, z));
           }};

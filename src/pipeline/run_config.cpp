@@ -125,12 +125,10 @@ RunConfig load_run_config(const std::string& path, const std::vector<std::string
   return config;
 }
 
-smlm::ReadOptions with_overrides(const smlm::ReadOptions& options,
-                                 const std::vector<std::string>& overrides) {
+smlm::ReadOptions read_options(const std::vector<std::string>& overrides) {
   pipeline::Node nothing;
   nothing.kind = pipeline::Node::Kind::map;
   RunConfig config;
-  config.read = options;
   read_fields(std::move(nothing), overrides, "--set", config);
   std::vector<std::string> faults;
   if (!config.files.empty()) faults.emplace_back("input.files: the tables are named as arguments");

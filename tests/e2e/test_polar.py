@@ -46,8 +46,19 @@ class Usage(PolarCase):
         self.fails(3, "set input.pixel_size_nm", "inspect", table, *pixels)
         said = json.loads(self.ok("inspect", table, *pixels, "--set", "input.pixel_size_nm=100", "--json"))
         self.assertEqual([c["maximum"] for c in said["columns"] if c["name"] == "x"], [1900])
+        short = self.ok("inspect", table, *pixels, "--pixel-size-nm", "100", "--format", "csv", "--json")
+        self.assertEqual(json.loads(short), said)
+        self.fails(2, "input.format", "inspect", table, "--format", "tsv")
         self.fails(2, "input.pixelsize", "inspect", table, "--set", "input.pixelsize=100")
         self.fails(2, "named as arguments", "inspect", table, "--set", "input.files=other.csv")
+
+
+    def test_inspect_takes_its_options_with_a_configuration_too(self):
+        self.write("a.csv", "x [nm],y [nm]\n1,2\n3,4\n")
+        self.write("b.csv", "x [nm],y [nm]\n5,6\n7,8\n")
+        config = self.write("two.yaml", "input: {files: [a.csv, b.csv]}\n")
+        self.assertEqual(json.loads(self.ok("inspect", config, "--json"))["particles"], 0)
+        self.assertEqual(json.loads(self.ok("inspect", config, "--one-per-file", "--json"))["particles"], 2)
 
 
 class BadInput(PolarCase):

@@ -32,9 +32,9 @@ struct RunConfig {
 /// everything. Throws smlm::Error: usage for the configuration, input for files that do not exist.
 RunConfig load_run_config(const std::string& path, const std::vector<std::string>& overrides);
 
-/// How tables are read that are named without a configuration: `options` with `input.key=value` overrides.
+/// How tables are read that are named without a configuration: the defaults with `input.key=value` overrides.
 /// Throws smlm::Error (usage).
-smlm::ReadOptions with_overrides(const smlm::ReadOptions& options, const std::vector<std::string>& overrides);
+smlm::ReadOptions read_options(const std::vector<std::string>& overrides);
 
 /// The effective configuration as YAML text, every key written; reads back to the same configuration.
 std::string run_config_text(const RunConfig& config);

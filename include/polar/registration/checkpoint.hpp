@@ -18,6 +18,7 @@ class Checkpoint {
   }
   /// Keeps a state from which the rest follows, bit for bit. Called from the thread that runs the
   /// registration; may throw smlm::Error (io).
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): for overrides to move from
   virtual void keep(const std::string& name, std::string bytes) { (void)name, (void)bytes; }
   /// No state whose name begins so will be asked for again.
   virtual void drop(const std::string& prefix) { (void)prefix; }
