@@ -92,7 +92,7 @@ std::string write_weights(const std::string& path, const PointNetWeights& weight
       layer.weight = layer.weight.unaryExpr(round).eval();
       layer.bias = layer.bias.unaryExpr(round).eval();
     });
-  const std::string name = hash(stored);
+  std::string name = hash(stored);
   smlm::AtomicFile file(path);
   smlm::h5::File h5 = smlm::h5::File::create(file.temporary_path());
   const auto write = [&](const std::string& object, const float* values, const smlm::h5::Shape& shape) {
@@ -104,6 +104,7 @@ std::string write_weights(const std::string& path, const PointNetWeights& weight
       return;
     }
     std::vector<std::uint16_t> patterns;
+    patterns.reserve(numbers.size());
     for (const float v : numbers) patterns.push_back(half_from_float(v));
     h5.write(object, patterns, shape, {kGzip, {}});
     h5.write_string_attribute(object, "encoding", "IEEE 754 binary16");

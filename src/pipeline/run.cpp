@@ -99,6 +99,7 @@ std::vector<std::pair<std::size_t, std::string>> rejections(const Results& r) {
   for (const RegisteredView& v : r.registration.view)
     if (!v.accepted) ++count[v.reason];
   std::vector<std::pair<std::size_t, std::string>> sorted;
+  sorted.reserve(count.size());
   for (const auto& [reason, n] : count) sorted.emplace_back(n, reason);
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

@@ -29,6 +29,7 @@ constexpr std::size_t kRelaxedLocalisations = 200;                  // of a view
 
 std::size_t median_size(const Subsets& subsets, const std::vector<int>& which) {
   std::vector<std::size_t> size;
+  size.reserve(which.size());
   for (const int i : which) size.push_back(subsets[static_cast<std::size_t>(i)].size());
   return size.empty() ? 0 : upper_median(std::move(size));
 }

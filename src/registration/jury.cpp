@@ -27,6 +27,7 @@ Jury jury(const Problem& problem) {
 
 std::vector<Pose> poses_of(const RoundState& state, const std::vector<int>& which) {
   std::vector<Pose> pose;
+  pose.reserve(which.size());
   for (const int i : which) pose.push_back(state.pose[static_cast<std::size_t>(i)]);
   return pose;
 }

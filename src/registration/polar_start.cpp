@@ -33,7 +33,7 @@ WeightsFile weights_of(const RegistrationOptions& options) {
 LatentModel latent_model(const RegistrationOptions& options) {
   if (!needs_weights(options)) return {};
   WeightsFile file = weights_of(options);
-  return {make_pointnet(std::move(file.weights)), std::move(file.sha256)};
+  return {make_pointnet(file.weights), std::move(file.sha256)};
 }
 
 LatentOptions latent_options(const RegistrationOptions& options) {

@@ -34,6 +34,7 @@ class ShortRuns {
 
  private:
   Hypothesis run(int number) const;
+  Hypothesis one_view(int number) const;
   void settle(Hypothesis& h) const;
 
   StartContext thinned_, plain_;

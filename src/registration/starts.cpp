@@ -133,8 +133,9 @@ class Competition {
   // Registers what came of the winner, and keeps it where held-out localisations agree.
   bool once_more(const std::string& name, bool crowded, RoundState state) {
     if (!registered(name, crowded, state)) return false;
-    enter({name, out_.winner.held_out, state.held_out, state.held_out > out_.winner.held_out},
-          std::move(state));
+    const StartReport report{name, out_.winner.held_out, state.held_out,
+                             state.held_out > out_.winner.held_out};
+    enter(report, std::move(state));
     return true;
   }
 

@@ -84,7 +84,7 @@ std::vector<Pose> motions(const std::vector<Eigen::Matrix3d>& turns, const Eigen
 // The frame with the main axis along `axis` and the best turn about it.
 Eigen::Matrix3d swept(const SelfSimilarity& t, const std::string& group, const Axis& axis) {
   const MainAxis main = main_axis(group);
-  const Eigen::Matrix3d first = Eigen::Quaterniond::FromTwoVectors(axis, main.axis).toRotationMatrix();
+  Eigen::Matrix3d first = Eigen::Quaterniond::FromTwoVectors(axis, main.axis).toRotationMatrix();
   if (group[0] == 'C') return first;
   const std::vector<Eigen::Matrix3d> turns = some_turns(group, kMostTurns);
   const auto steps = static_cast<std::size_t>(std::ceil(kTwoPi / main.fold / kSweepStep));

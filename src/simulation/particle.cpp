@@ -33,8 +33,9 @@ Pose draw_view_from_structure(const SimulationOptions& o, std::uint64_t index) {
   }
   if (o.field_spacing_nm > 0) {
     const auto side = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(o.particles))));
-    pose.translation = o.field_spacing_nm * Eigen::Vector3d(static_cast<double>(index % side) + 0.5,
-                                                            static_cast<double>(index / side) + 0.5, 0);
+    const std::uint64_t column = index % side, row = index / side;
+    pose.translation = o.field_spacing_nm *
+                       Eigen::Vector3d(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5, 0);
   }
   for (int axis = 0; axis < (o.planar ? 2 : 3); ++axis)
     pose.translation[axis] += o.translation_nm * (2 * random.uniform() - 1);

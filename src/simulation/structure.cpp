@@ -77,6 +77,7 @@ Structure polyhedron(const StructureOptions& o, bool whole_cube) {
 Structure ring(const StructureOptions& o) {
   const int units = or_default(o.units, 8);
   std::vector<Eigen::Vector3d> site;
+  site.reserve(static_cast<std::size_t>(units));
   for (int u = 0; u < units; ++u)
     site.push_back(on_circle(or_default(o.radius_nm, kRing_nm), 2 * kPi * u / units, 0));
   return {"ring", as_matrix(site), "D" + std::to_string(units)};

@@ -74,7 +74,7 @@ Eigen::Matrix3Xd read_ply(const std::string& path) {
     if (first == "end_header") break;
   }
   if (!text) fail(path, "not a PLY file in text form", "convert it to 'format ascii 1.0'");
-  const Eigen::Matrix3Xd points = read_text(path, line_number + 1, vertices);
+  Eigen::Matrix3Xd points = read_text(path, line_number + 1, vertices);
   if (points.cols() != static_cast<Eigen::Index>(vertices)) fail(path, "ends before its last vertex");
   return points;
 }

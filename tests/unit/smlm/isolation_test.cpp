@@ -63,8 +63,9 @@ TEST(Isolation, AHangEndsAtTheLimit) {
 }
 
 TEST(Isolation, MemoryIsLimitedWhetherOrNotItsFailureIsThrown) {
-#if defined(__SANITIZE_ADDRESS__) || SMLM_HAS_FEATURE(address_sanitizer)
-  GTEST_SKIP() << "AddressSanitizer ends the process where an allocation fails";
+#if defined(__SANITIZE_ADDRESS__) || SMLM_HAS_FEATURE(address_sanitizer) || defined(__SANITIZE_THREAD__) || \
+    SMLM_HAS_FEATURE(thread_sanitizer)
+  GTEST_SKIP() << "the sanitizer ends the process where an allocation fails";
 #endif
   const auto throws = [] { const std::vector<char> much(std::size_t{8} << 30, 'x'); };
   const auto hides = [] {
