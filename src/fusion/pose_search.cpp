@@ -40,11 +40,6 @@ std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar) {
   return out;
 }
 
-std::vector<Eigen::Vector3f> centre_shifts(float step, bool planar) {
-  constexpr double kPlanarReach = 0.4;
-  return planar ? lattice_shifts(kPlanarReach, static_cast<double>(step), true) : axis_shifts(step, false);
-}
-
 std::vector<Eigen::Vector3f> lattice_shifts(double reach, double spacing, bool planar) {
   std::vector<Eigen::Vector3f> out;
   const int n = static_cast<int>(std::ceil(reach / spacing));

@@ -80,21 +80,6 @@ Hypothesis random_start(const StartContext& context, int centres, int number, bo
   return with_template(context, centres, std::move(h));
 }
 
-Hypothesis one_view_start(const StartContext& context, int centres, int number) {
-  std::vector<int> richest = context.which;
-  const auto size = [&](int i) { return context.fitted[static_cast<std::size_t>(i)].size(); };
-  std::stable_sort(richest.begin(), richest.end(), [&](int a, int b) { return size(a) > size(b); });
-  const std::vector<int> one = {richest[static_cast<std::size_t>(number) % richest.size()]};
-  Hypothesis h;
-  h.name = "one view " + std::to_string(number);
-  h.number = number;
-  h.pose.resize(context.which.size());
-  h.mixture = scattered_mixture(context.problem, context.fitted, one, {Pose()}, centres,
-                                static_cast<std::uint64_t>(number));
-  h.mixture.outlier_fraction = first_outlier_fraction(h.crowded);
-  return h;
-}
-
 Hypothesis imaged_start(const StartContext& context, int centres, int number) {
   Hypothesis h;
   h.name = "imaged";
@@ -117,7 +102,7 @@ void anneal(const StartContext& context, const AnnealingOptions& options, bool k
     const FusionData data(p.views, p.axes, noise, context.fitted, context.which);
     if (sweep > 0 || !keep_first_poses) {
       SearchOptions search;
-      search.translation = centre_shifts(options.shift * static_cast<float>(1.0 - 0.5 * t), p.planar());
+      search.translation = axis_shifts(options.shift * static_cast<float>(1.0 - 0.5 * t), p.planar());
       const Eigen::Matrix3f turn = random_rotation(turns, p.planar()).cast<float>();
       draw_poses(context, noise, grid, turn, search, interpolate(options.first_beta, options.last_beta, t),
                  kDrawStage + 16 * static_cast<std::uint32_t>(sweep + 1000 * h.number), h);

@@ -48,8 +48,6 @@ Hypothesis with_template(const StartContext& context, int centres, Hypothesis h)
 
 /// First poses and a template scattered over the localisations under them.
 Hypothesis random_start(const StartContext& context, int centres, int number, bool crowded);
-/// The template is one view, of those with the most localisations.
-Hypothesis one_view_start(const StartContext& context, int centres, int number);
 Hypothesis imaged_start(const StartContext& context, int centres, int number);
 
 /// Anneals a hypothesis in place. `keep_first_poses`: the first sweep fits the template to the poses given.

@@ -45,7 +45,7 @@ SearchAgainReport search(const Problem& problem, const SearchGrid& grid, const R
   search.basins = options.basins;
   search.group = state.group;
   search.most_localisations = options.search_localisations;
-  search.grid.translation = centre_shifts(options.shift, problem.planar());
+  search.grid.translation = axis_shifts(options.shift, problem.planar());
   search.grid.promising = options.promising;
   search.grid.step = options.step;
   if (far) {

@@ -16,7 +16,6 @@ constexpr double kLookUpBudget =
 constexpr double kShifts = 7.0;  // tried for every rotation
 constexpr int kLongStarts = 6;   // that the budget must allow
 constexpr double kLongest = 2.0;  // times the usual
-constexpr double kPlanarLastWidth = 0.06;
 
 double look_ups_of_a_sweep(const StartContext& context, const AnnealingOptions& options) {
   double localisations = 0;
@@ -29,10 +28,7 @@ double look_ups_of_a_sweep(const StartContext& context, const AnnealingOptions& 
 // there, with a template of more centres that ends sharper, and many.
 AnnealingOptions annealing(const StartContext& context) {
   AnnealingOptions options;
-  if (context.problem.planar()) {  // turns in the plane are few
-    options.last_width = kPlanarLastWidth;
-    return options;
-  }
+  if (context.problem.planar()) return options;  // turns in the plane are few
   const double longer = std::clamp(
       kLookUpBudget / kLongStarts / look_ups_of_a_sweep(context, options) / options.sweeps, 1.0, kLongest);
   options.sweeps = static_cast<int>(options.sweeps * longer);
@@ -61,7 +57,6 @@ Hypothesis ShortRuns::run(int number) const {
   const AnnealingOptions usual = annealing(plain_);
   if (number < random_) {
     const bool crowded = number % 2 == 0;
-    if (!crowded && plain_.problem.planar()) return one_view(number);
     const StartContext& context = crowded ? thinned_ : plain_;
     Hypothesis h = random_start(context, usual.centres, number, crowded);
     anneal(context, usual, false, h);
@@ -71,17 +66,6 @@ Hypothesis ShortRuns::run(int number) const {
                      ? polar_start(plain_, *model_, options_, usual.centres, number)
                      : imaged_start(plain_, usual.centres, number);
   settle(h);
-  return h;
-}
-
-// In the plane a template from nothing stays one of nothing where half of the labels are missing: what the
-// views share is finer than the blur that begins.
-Hypothesis ShortRuns::one_view(int number) const {
-  AnnealingOptions options = annealing(plain_);
-  options.first_width = 0.15;
-  options.first_beta = 0.5;
-  Hypothesis h = one_view_start(plain_, options.centres, number);
-  anneal(plain_, options, false, h);
   return h;
 }
 

@@ -34,7 +34,6 @@ class ShortRuns {
 
  private:
   Hypothesis run(int number) const;
-  Hypothesis one_view(int number) const;
   void settle(Hypothesis& h) const;
 
   StartContext thinned_, plain_;

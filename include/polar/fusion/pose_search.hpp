@@ -40,10 +40,6 @@ std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, cons
 /// 0 and +-shift along the axes (7), planar without z (5).
 std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar);
 
-/// Where the centre of a view may be: steps along the axes, or in the plane, where shifts cost little, as far
-/// as the centre of a particle strays that lacks half of its labels.
-std::vector<Eigen::Vector3f> centre_shifts(float step, bool planar);
-
 /// A cubic lattice within a ball of radius `reach`; planar: a square one within a disc.
 std::vector<Eigen::Vector3f> lattice_shifts(double reach, double spacing, bool planar);
 

@@ -13,7 +13,6 @@
 #include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/occupancy.hpp"
 #include "polar/fusion/polish.hpp"
-#include "polar/fusion/pose_search.hpp"
 
 namespace polar {
 namespace {
@@ -180,28 +179,6 @@ TEST(DirectionVolumes, manyShiftsAtATimeScoreAsEachAloneInEveryInstructionSet) {
               1);
   }
   limit_isa(Isa::avx512);
-}
-
-TEST(PoseSearch, inThePlaneTheCentreMayLieFurtherOff) {
-  const float step = 0.1f, astray = 0.35f;
-  const auto farthest = [](const std::vector<Eigen::Vector3f>& shifts) {
-    float most = 0;
-    for (const Eigen::Vector3f& s : shifts) most = std::max(most, s.norm());
-    return most;
-  };
-  const std::vector<Eigen::Vector3f> planar = centre_shifts(step, true), space = centre_shifts(step, false);
-  EXPECT_EQ(space.size(), 7u);
-  EXPECT_FLOAT_EQ(farthest(space), step);
-  for (int k = 0; k < 12; ++k) {
-    const float angle = 0.5f * static_cast<float>(k);
-    const Eigen::Vector3f centre = astray * Eigen::Vector3f(std::cos(angle), std::sin(angle), 0);
-    float nearest = 1;
-    for (const Eigen::Vector3f& s : planar) {
-      EXPECT_EQ(s.z(), 0);
-      nearest = std::min(nearest, (s - centre).norm());
-    }
-    EXPECT_LE(nearest, step) << angle;
-  }
 }
 
 TEST(Calibration, recoversWhatTheTableStatesWrongly) {
