@@ -29,7 +29,7 @@ struct ThreadLimit::Impl {
 };
 ThreadLimit::ThreadLimit(int threads) : impl_(new Impl{limit.exchange(threads)}) {}
 ThreadLimit::~ThreadLimit() { limit = impl_->previous; }
-int thread_limit() { return limit > 0 ? limit.load() : hardware(); }
+int thread_limit() { return limit > 0 ? std::min(limit.load(), hardware()) : hardware(); }
 
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body) {
   if (inside || thread_limit() == 1) {

@@ -52,7 +52,6 @@ class Usage(PolarCase):
         self.fails(2, "input.pixelsize", "inspect", table, "--set", "input.pixelsize=100")
         self.fails(2, "named as arguments", "inspect", table, "--set", "input.files=other.csv")
 
-
     def test_inspect_takes_its_options_with_a_configuration_too(self):
         self.write("a.csv", "x [nm],y [nm]\n1,2\n3,4\n")
         self.write("b.csv", "x [nm],y [nm]\n5,6\n7,8\n")
