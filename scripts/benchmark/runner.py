@@ -2,6 +2,7 @@
 reused by the next call with the same program, settings and views, so that an interrupted study goes on."""
 import hashlib
 import json
+import os
 import platform
 from datetime import datetime, timezone
 
@@ -14,8 +15,7 @@ from .program import NothingRegistered, Refused
 def machine():
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
                  platform.machine())
-    cores = sum(line.startswith("processor") for line in open("/proc/cpuinfo"))
-    return f"{model}, {cores} cores"
+    return f"{model}, {len(os.sched_getaffinity(0))} of {os.cpu_count()} cores"
 
 
 def simulate_settings(study, point, chosen, level, a):
