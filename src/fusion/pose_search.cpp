@@ -40,6 +40,10 @@ std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar) {
   return out;
 }
 
+std::vector<Eigen::Vector3f> shifts_within(float reach, float step, bool planar) {
+  return reach > step ? lattice_shifts(reach, step, planar) : axis_shifts(step, planar);
+}
+
 std::vector<Eigen::Vector3f> lattice_shifts(double reach, double spacing, bool planar) {
   std::vector<Eigen::Vector3f> out;
   const int n = static_cast<int>(std::ceil(reach / spacing));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fullness.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
@@ -16,6 +17,7 @@ namespace {
 constexpr std::uint32_t kFirstPoseStage = 21, kTurnStage = 23, kDrawStage = 24;
 constexpr int kSigmaClasses = 2;  // a wide template hardly tells uncertainties apart
 constexpr int kPlanarRotations = 90;
+constexpr std::size_t kFullestOneOf = 4, kFewestFullest = 32;
 constexpr std::size_t kMostViews = 64, kMostLocalisations = 96, kMostHeldOut = 64;
 
 double interpolate(double first, double last, double t) { return first * std::pow(last / first, t); }
@@ -62,6 +64,13 @@ StartContext start_context(const Problem& problem) {
           first_of(problem.held_out, kMostHeldOut)};
 }
 
+StartContext fullest_context(const Problem& problem) {
+  StartContext context = start_context(problem);
+  context.which = fullest_views(problem, context.fitted,
+                                std::clamp(problem.size() / kFullestOneOf, kFewestFullest, kMostViews));
+  return context;
+}
+
 Hypothesis with_template(const StartContext& context, int centres, Hypothesis h) {
   h.mixture = scattered_mixture(context.problem, context.fitted, context.which, h.pose, centres,
                                 static_cast<std::uint64_t>(h.number));
@@ -88,6 +97,19 @@ Hypothesis imaged_start(const StartContext& context, int centres, int number) {
   return with_template(context, centres, std::move(h));
 }
 
+Hypothesis one_view_start(const StartContext& context, int centres, int number, int rank) {
+  Hypothesis h;
+  h.name = "one view " + std::to_string(rank);
+  h.number = number;
+  h.one_view = true;
+  h.pose.resize(context.which.size());
+  const int view = context.which[static_cast<std::size_t>(rank) % context.which.size()];
+  h.mixture = scattered_mixture(context.problem, context.fitted, {view}, {Pose()}, centres,
+                                static_cast<std::uint64_t>(number));
+  h.mixture.outlier_fraction = first_outlier_fraction(h.crowded);
+  return h;
+}
+
 void anneal(const StartContext& context, const AnnealingOptions& options, bool keep_first_poses,
             Hypothesis& h) {
   const Problem& p = context.problem;
@@ -102,7 +124,8 @@ void anneal(const StartContext& context, const AnnealingOptions& options, bool k
     const FusionData data(p.views, p.axes, noise, context.fitted, context.which);
     if (sweep > 0 || !keep_first_poses) {
       SearchOptions search;
-      search.translation = axis_shifts(options.shift * static_cast<float>(1.0 - 0.5 * t), p.planar());
+      search.translation =
+          shifts_within(options.reach, options.shift * static_cast<float>(1.0 - 0.5 * t), p.planar());
       const Eigen::Matrix3f turn = random_rotation(turns, p.planar()).cast<float>();
       draw_poses(context, noise, grid, turn, search, interpolate(options.first_beta, options.last_beta, t),
                  kDrawStage + 16 * static_cast<std::uint32_t>(sweep + 1000 * h.number), h);

@@ -22,6 +22,8 @@ struct StartContext {
   Subsets held_out;
 };
 StartContext start_context(const Problem& problem);
+/// Of the quarter of the views (32 to 64) that show most of the structure (fullness.hpp), fullest first.
+StartContext fullest_context(const Problem& problem);
 
 struct AnnealingOptions {
   int sweeps = 30;
@@ -29,15 +31,17 @@ struct AnnealingOptions {
   double first_width = 0.30, last_width = 0.10;  // of the template, in particle radii
   double first_beta = 0.05, last_beta = 1.0;     // inverse temperature of the pose posterior
   int rotations = 600;
-  float shift = 0.12f;    // of the translations tried
+  float shift = 0.12f;    // of the translations tried, along the axes
+  float reach = 0;        // where it is larger: of a lattice of shifts
   int maximisations = 2;  // EM steps a sweep
 };
 
 /// A template and poses (template_from_view, one for each of context.which) under competition.
 struct Hypothesis {
   std::string name;
-  int number = 0;        // keys its random streams
-  bool crowded = false;  // expects strands: many outliers at first, weak centres are sown anew
+  int number = 0;         // keys its random streams
+  bool crowded = false;   // expects strands: many outliers at first, weak centres are sown anew
+  bool one_view = false;  // began with one view: searched and narrowed in its own way (rounds.hpp)
   Mixture mixture;
   std::vector<Pose> pose;
   double held_out = 0;  // mean log density per localisation that was not fitted
@@ -49,6 +53,8 @@ Hypothesis with_template(const StartContext& context, int centres, Hypothesis h)
 /// First poses and a template scattered over the localisations under them.
 Hypothesis random_start(const StartContext& context, int centres, int number, bool crowded);
 Hypothesis imaged_start(const StartContext& context, int centres, int number);
+/// The template is view context.which[rank]; poses are still to be found.
+Hypothesis one_view_start(const StartContext& context, int centres, int number, int rank);
 
 /// Anneals a hypothesis in place. `keep_first_poses`: the first sweep fits the template to the poses given.
 void anneal(const StartContext& context, const AnnealingOptions& options, bool keep_first_poses,

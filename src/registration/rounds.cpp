@@ -45,7 +45,8 @@ SearchAgainReport search(const Problem& problem, const SearchGrid& grid, const R
   search.basins = options.basins;
   search.group = state.group;
   search.most_localisations = options.search_localisations;
-  search.grid.translation = axis_shifts(options.shift, problem.planar());
+  search.grid.translation =
+      shifts_within(state.one_view ? options.stray_reach : 0, options.shift, problem.planar());
   search.grid.promising = options.promising;
   search.grid.step = options.step;
   if (far) {
@@ -127,7 +128,7 @@ bool run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptio
       search_all(problem, grid, options, noise, problem.fitted, at);
       searching = round == 0 || at.escaped > options.settled * static_cast<double>(problem.size());
     }
-    if (round == 0) {
+    if (round == 0 && !at.one_view) {
       const double outliers = at.mixture.outlier_fraction;
       at.mixture = scattered_mixture(problem, few, problem.all, at.pose, centres_for(problem), 1);
       at.mixture.outlier_fraction = std::max(outliers, first_outlier_fraction(at.crowded));

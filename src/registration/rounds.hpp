@@ -21,6 +21,7 @@ struct RoundOptions {
   double first_width = 0.09, last_width = 0.03, narrowing = 0.72;
   double search_width = 0.05;  // the search looks at the template no sharper than this
   float shift = 0.10f, step = 0.06f;
+  float stray_reach = 0.4f;  // of the shifts where a particle lacks so much that its centre is off
   double far_reach = 1.2, far_spacing = 0.2;  // of the shifts where the centre of a view may be far off
   int far_coarse = 32;                        // localisations looked at for every one of them
   int promising = 200;
@@ -34,6 +35,8 @@ struct RoundState {
   std::vector<Pose> pose;      // template_from_view, all views
   std::vector<double> margin;  // of the last search
   bool crowded = true;         // template_tools.hpp
+  bool one_view = false;  // began with one: searches shift as far as centres stray, and the template, one
+                          // of few sharp sites, is not scattered anew
   double occupancy =
       std::numeric_limits<double>::infinity();  // polar/fusion/occupancy.hpp: strength of its prior
   RotationGroup group;                          // of the template, where one is imposed (symmetry.hpp)

@@ -16,6 +16,7 @@ constexpr double kLookUpBudget =
 constexpr double kShifts = 7.0;  // tried for every rotation
 constexpr int kLongStarts = 6;   // that the budget must allow
 constexpr double kLongest = 2.0;  // times the usual
+constexpr int kOneViews = 6;
 
 double look_ups_of_a_sweep(const StartContext& context, const AnnealingOptions& options) {
   double localisations = 0;
@@ -48,10 +49,12 @@ int random_starts(const StartContext& context) {
 ShortRuns::ShortRuns(const Problems& problems, const Autoencoder* model, const RegistrationOptions& options)
     : thinned_(start_context(problems.thinned)),
       plain_(start_context(problems.plain)),
+      fullest_(fullest_context(problems.plain)),
       model_(model),
       options_(options),
       random_(wants(options, "random") ? random_starts(plain_) : 0),
-      all_(random_ + (wants(options, "polar") ? 1 : 0) + (wants(options, "imaged") ? 1 : 0)) {}
+      posed_(random_ + (wants(options, "polar") ? 1 : 0) + (wants(options, "imaged") ? 1 : 0)),
+      all_(posed_ + (random_ > 0 && problems.plain.planar() ? kOneViews : 0)) {}
 
 Hypothesis ShortRuns::run(int number) const {
   const AnnealingOptions usual = annealing(plain_);
@@ -62,10 +65,23 @@ Hypothesis ShortRuns::run(int number) const {
     anneal(context, usual, false, h);
     return h;
   }
+  if (number >= posed_) return one_view(number);
   Hypothesis h = wants(options_, "polar") && number == random_
                      ? polar_start(plain_, *model_, options_, usual.centres, number)
                      : imaged_start(plain_, usual.centres, number);
   settle(h);
+  return h;
+}
+
+// In the plane a template from nothing stays one of nothing where half of the labels are missing: what the
+// views share is finer than the blur that begins. The fullest views find each other.
+Hypothesis ShortRuns::one_view(int number) const {
+  AnnealingOptions options = annealing(fullest_);
+  options.first_width = 0.15, options.last_width = 0.06;
+  options.first_beta = 0.5;
+  options.reach = RoundOptions().stray_reach;
+  Hypothesis h = one_view_start(fullest_, options.centres, number, number - posed_);
+  anneal(fullest_, options, false, h);
   return h;
 }
 
@@ -104,10 +120,11 @@ void ShortRuns::run_until(int count, Progress& progress, Checkpoint& checkpoint,
 }
 
 RoundState ShortRuns::state_of(const Hypothesis& h) const {
-  const StartContext& context = h.crowded ? thinned_ : plain_;
+  const StartContext& context = h.one_view ? fullest_ : h.crowded ? thinned_ : plain_;
   RoundState state;
   state.mixture = h.mixture;
   state.crowded = h.crowded;
+  state.one_view = h.one_view;
   state.pose.resize(context.problem.size());
   for (std::size_t k = 0; k < context.which.size(); ++k)
     state.pose[static_cast<std::size_t>(context.which[k])] = h.pose[k];

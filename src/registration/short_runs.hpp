@@ -17,7 +17,8 @@ class ShortRuns {
   /// `model`: of the start `polar`, null where it is not wanted.
   ShortRuns(const Problems& problems, const Autoencoder* model, const RegistrationOptions& options);
 
-  /// The random starts come first, then those that begin with poses from elsewhere, `polar` and `imaged`.
+  /// The random starts come first, then those that begin with poses from elsewhere, `polar` and `imaged`,
+  /// then, in the plane, those that begin with one of the fullest views.
   int few_random() const;
   int random() const { return random_; }
   int all() const { return all_; }
@@ -34,12 +35,13 @@ class ShortRuns {
 
  private:
   Hypothesis run(int number) const;
+  Hypothesis one_view(int number) const;
   void settle(Hypothesis& h) const;
 
-  StartContext thinned_, plain_;
+  StartContext thinned_, plain_, fullest_;
   const Autoencoder* model_;
   const RegistrationOptions& options_;
-  int random_, all_;
+  int random_, posed_, all_;
 };
 
 }  // namespace polar

@@ -14,7 +14,7 @@ namespace polar {
 
 namespace {
 
-constexpr int kMostFinalists = 5;
+constexpr int kMostFinalists = 5, kOneViewFinalists = 2;
 constexpr double kTie = 0.01;  // a difference in log likelihood that short runs do not tell from none
 constexpr double kFinalistLocalisations =
     130000;  // views x localisations that the finalists may cost together
@@ -46,18 +46,21 @@ class Competition {
   bool run() {
     if (!run_until_two_agree()) return false;
     if (out_.agreement > 0) return without_strands();
-    if (!run_until(runs_.all()) || !register_best(finalists())) return false;
+    if (!run_until(runs_.all()) || !register_best(finalists(), false) ||
+        !register_best(kOneViewFinalists, true))
+      return false;
     judge();
     return without_strands() && ask_pairs() && undouble();
   }
   StartsOutcome outcome() { return std::move(out_); }
 
  private:
-  // Short runs of the first so many starts, ranked.
+  // Short runs of the first so many starts, ranked: those of one view, which end sharper, among themselves.
   bool run_until(int count) {
     runs_.run_until(count, progress_, checkpoint_, best_first_);
-    std::stable_sort(best_first_.begin(), best_first_.end(),
-                     [](const Hypothesis& a, const Hypothesis& b) { return a.held_out > b.held_out; });
+    std::stable_sort(best_first_.begin(), best_first_.end(), [](const Hypothesis& a, const Hypothesis& b) {
+      return a.one_view != b.one_view ? b.one_view : a.held_out > b.held_out;
+    });
     return !progress_.cancelled();
   }
 
@@ -69,9 +72,10 @@ class Competition {
     return true;
   }
 
-  bool register_best(std::size_t most) {
-    for (std::size_t k = 0; k < std::min(most, best_first_.size()); ++k) {
-      const Hypothesis& h = best_first_[k];
+  bool register_best(std::size_t most, bool of_one_view) {
+    for (const Hypothesis& h : best_first_) {
+      if (h.one_view != of_one_view) continue;
+      if (most-- == 0) break;
       if (finalist_.count(h.number) > 0) continue;
       RoundState state = runs_.state_of(h);
       if (!registered(std::to_string(h.number), h.crowded, state)) return false;
@@ -95,7 +99,7 @@ class Competition {
       if (count == static_cast<int>(best_first_.size())) break;  // all of them were few
       if (!run_until(count)) return false;
       if (!worth_it || best_first_.size() < 2) continue;
-      if (!register_best(2)) return false;
+      if (!register_best(2, false)) return false;
       const double alike =
           agreement(finalist_.at(best_first_[0].number).pose, finalist_.at(best_first_[1].number).pose);
       if (alike < kAgreement) continue;

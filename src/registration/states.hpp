@@ -43,15 +43,15 @@ void fields(Archive& archive, NoiseModel& value) {
 }
 template <class Archive>
 void fields(Archive& archive, Hypothesis& value) {
-  auto& [name, number, crowded, mixture, pose, held_out] = value;
-  archive(name, number, crowded, mixture, pose, held_out);
+  auto& [name, number, crowded, one_view, mixture, pose, held_out] = value;
+  archive(name, number, crowded, one_view, mixture, pose, held_out);
 }
 template <class Archive>
 void fields(Archive& archive, RoundState& value) {
-  auto& [mixture, pose, margin, crowded, occupancy, group, sites, width, held_out, rounds, escaped, twins,
-         parts, structureless] = value;
-  archive(mixture, pose, margin, crowded, occupancy, group, sites, width, held_out, rounds, escaped, twins,
-          parts, structureless);
+  auto& [mixture, pose, margin, crowded, one_view, occupancy, group, sites, width, held_out, rounds, escaped,
+         twins, parts, structureless] = value;
+  archive(mixture, pose, margin, crowded, one_view, occupancy, group, sites, width, held_out, rounds, escaped,
+          twins, parts, structureless);
 }
 template <class Archive>
 void fields(Archive& archive, RoundsUnderWay& value) {

@@ -9,9 +9,11 @@ import subprocess
 import sys
 import time
 import unittest
+from pathlib import Path
 
 from harness import HEADER, POLAR, PolarCase
 
+ORIGAMI = Path(__file__).resolve().parents[2] / "configs/studies/structures/origami.csv"
 SMALL = "simulation: {particles: 6, blinks_mean: 3, cramer_rao: false}"
 PORES = "simulation: {particles: 30, blinks_mean: 10, sigma_xy_nm: [2, 5], cramer_rao: true}"
 
@@ -389,6 +391,14 @@ class Recall(PolarCase):
                              "simulation: {particles: 30, planar: true, orientation: in_plane, blinks_mean: 6}")
         self.ok("run", self.run_config())
         self.assertGreaterEqual(self.recall("results", data / "poses.csv", 10)[0], 0.9)
+
+    def test_planar_particles_that_lack_half_of_their_labels(self):
+        # Their centres stray by a third of the radius, and a template from nothing stays one of nothing.
+        data = self.simulate(f"structure: {{kind: file, file: {ORIGAMI}}}\n"
+                             "simulation: {particles: 120, planar: true, orientation: in_plane, label_size_nm: 0.5,"
+                             " sampling: sites, labelling_efficiency: 0.5, blinks_mean: 8, sigma_xy_nm: [2, 2]}")
+        self.ok("run", self.run_config())
+        self.assertGreaterEqual(self.recall("results", data / "poses.csv", 10)[0], 0.75)
 
     def test_wrong_poses_are_told_apart(self):
         data = self.simulate(PORES)

@@ -43,4 +43,7 @@ std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar);
 /// A cubic lattice within a ball of radius `reach`; planar: a square one within a disc.
 std::vector<Eigen::Vector3f> lattice_shifts(double reach, double spacing, bool planar);
 
+/// One step along the axes, or such a lattice where `reach` is longer than a step.
+std::vector<Eigen::Vector3f> shifts_within(float reach, float step, bool planar);
+
 }  // namespace polar

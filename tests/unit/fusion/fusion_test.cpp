@@ -13,6 +13,7 @@
 #include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/occupancy.hpp"
 #include "polar/fusion/polish.hpp"
+#include "polar/fusion/pose_search.hpp"
 
 namespace polar {
 namespace {
@@ -179,6 +180,23 @@ TEST(DirectionVolumes, manyShiftsAtATimeScoreAsEachAloneInEveryInstructionSet) {
               1);
   }
   limit_isa(Isa::avx512);
+}
+
+TEST(PoseSearch, shiftsWithinAReachLeaveNoGapWiderThanAStep) {
+  const float step = 0.1f, reach = 0.4f;
+  EXPECT_EQ(shifts_within(0, step, true), axis_shifts(step, true));
+  const std::vector<Eigen::Vector3f> planar = shifts_within(reach, step, true);
+  for (int k = 0; k < 12; ++k) {
+    const float angle = 0.5f * static_cast<float>(k);
+    const Eigen::Vector3f centre = 0.9f * reach * Eigen::Vector3f(std::cos(angle), std::sin(angle), 0);
+    float nearest = 1;
+    for (const Eigen::Vector3f& s : planar) {
+      EXPECT_EQ(s.z(), 0);
+      EXPECT_LE(s.norm(), reach * 1.001f);
+      nearest = std::min(nearest, (s - centre).norm());
+    }
+    EXPECT_LE(nearest, step) << angle;
+  }
 }
 
 TEST(Calibration, recoversWhatTheTableStatesWrongly) {
