@@ -55,19 +55,26 @@ struct Partial {
   KernelLocalisations searched, judged;
 };
 
-double evidence_of(const Partial& shown, const Partial& judge, const Pose& judge_from_shown) {
+struct Evidence {
+  double mean = 0;  // over all localisations
+  double seen = 0, sum_of_seen = 0;
+};
+
+Evidence evidence_of(const Partial& shown, const Partial& judge, const Pose& judge_from_shown) {
   ViewFrame frame(*judge.blocked);
   std::vector<float> density(shown.judged.size());
   mixture_kernel().density(frame.at(judge_from_shown.inverse()), shown.judged.data(),
                            static_cast<int>(shown.judged.size()), density.data());
-  double sum = 0;
+  Evidence out;
   for (std::size_t j = 0; j < density.size(); ++j) {
     const kernel::Localisation& l = shown.judged[j];
     const Eigen::Vector3d x(l.x, l.y, l.z);
     const bool seen = judge.seen.contains((judge_from_shown * x).cast<float>());
-    sum += std::log((density[j] + (seen ? kSeen : kUnseen) * kDensity) / (kUnseen * kDensity));
+    const double term = std::log((density[j] + (seen ? kSeen : kUnseen) * kDensity) / (kUnseen * kDensity));
+    out.mean += term / static_cast<double>(density.size());
+    if (seen) out.seen += 1, out.sum_of_seen += term;
   }
-  return sum / static_cast<double>(std::max<std::size_t>(1, density.size()));
+  return out;
 }
 
 }  // namespace
@@ -87,9 +94,11 @@ struct PairSearch::Impl {
     for (const KernelLocalisations* few : {&second.searched, &second.judged})
       pose = refine_pose(frame, *few, pose, first.blocked->background(), planar, kEvaluations)
                  .view_from_template;
-    Match match{pose.inverse(), 0};
-    match.evidence = evidence_of(second, first, match.first_from_second) + evidence_of(first, second, pose);
-    return match;
+    const Evidence of_second = evidence_of(second, first, pose.inverse()),
+                   of_first = evidence_of(first, second, pose);
+    const double seen = of_second.seen + of_first.seen;
+    return {pose.inverse(), of_second.mean + of_first.mean, seen,
+            (of_second.sum_of_seen + of_first.sum_of_seen) / std::max(1.0, seen)};
   }
 };
 
@@ -156,7 +165,7 @@ std::vector<Match> PairSearch::matches(std::size_t first, const std::vector<std:
 
 Match PairSearch::refined(std::size_t first, std::size_t second, const Pose& first_from_second) const {
   const Partial &a = impl_->part[first], &b = impl_->part[second];
-  if (!a.blocked || !b.blocked) return {first_from_second, 0};
+  if (!a.blocked || !b.blocked) return {first_from_second, 0, 0, 0};
   return impl_->judged(a, b, first_from_second);
 }
 

@@ -45,12 +45,12 @@ class Competition {
 
   bool run() {
     if (!run_until_two_agree()) return false;
-    if (out_.agreement > 0) return without_strands();
+    if (out_.agreement > 0) return without_strands() && turned_back();
     if (!run_until(runs_.all()) || !register_best(finalists(), false) ||
         !register_best(kOneViewFinalists, true))
       return false;
     judge();
-    return without_strands() && ask_pairs() && undouble();
+    return without_strands() && ask_pairs() && undouble() && turned_back();
   }
   StartsOutcome outcome() { return std::move(out_); }
 
@@ -187,6 +187,18 @@ class Competition {
     RoundState state = out_.winner;
     fuse_anew(problems_.of(crowded), rounds_, which, state);
     return once_more("one copy", crowded, std::move(state));
+  }
+
+  // Where the winner poses some views half a turn off: two starts may agree on that, because it is the same
+  // views that look so.
+  bool turned_back() {
+    if (!out_.finished) return true;
+    const bool crowded = out_.winner.crowded;
+    RoundState state = out_.winner;
+    const std::vector<int> which = turn_back(problems_.of(crowded), state);
+    if (which.empty()) return true;
+    fuse_anew(problems_.of(crowded), rounds_, which, state);
+    return once_more("turned back", crowded, std::move(state));
   }
 
   const Problems& problems_;

@@ -1,8 +1,13 @@
 #include "two_copies.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include "jury.hpp"
+#include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/fusion/occupancy.hpp"
+#include "polar/fusion/pair_search.hpp"
+#include "symmetry_frame.hpp"
 #include "template_tools.hpp"
 
 namespace polar {
@@ -15,6 +20,9 @@ constexpr double kTwoGroups =
     1.5;  // kurtosis: 1 for two equal groups, 1.8 for an even spread, 3 for a normal one
 constexpr int kIterations = 60;
 constexpr std::uint32_t kVectorStage = 37;
+constexpr std::size_t kFewAsked = 16, kAsked = 50;  // views: the few say no, where there is nothing
+constexpr double kLooksAlike = 0.5;  // similarity of a template after a half turn that may be confused
+constexpr double kClear = 0.7;       // share of what pairs say that must come out: 0.3 to 0.6 of noise
 
 // Where views differ most in the centres they show: the first principal component, one number a view.
 Eigen::VectorXf first_component(const Eigen::MatrixXf& shown, std::uint64_t seed) {
@@ -29,6 +37,58 @@ Eigen::VectorXf first_component(const Eigen::MatrixXf& shown, std::uint64_t seed
     u /= length;
   }
   return u;
+}
+
+// How well pairs of views agree where both looked, the second turned in the template.
+struct Agreement {
+  Eigen::MatrixXd seen, fit;
+};
+Agreement agreement_of_pairs(const PairSearch& pairs, const std::vector<Pose>& pose, const Pose& turn) {
+  const auto n = static_cast<Eigen::Index>(pose.size());
+  Agreement out{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+  parallel_for(pose.size(), [&](std::size_t a) {
+    for (std::size_t b = a + 1; b < pose.size(); ++b) {
+      const Match match = pairs.refined(a, b, pose[a].inverse() * turn * pose[b]);
+      const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
+      out.seen(i, j) = out.seen(j, i) = match.seen;
+      out.fit(i, j) = out.fit(j, i) = match.fit;
+    }
+  });
+  return out;
+}
+
+// Views into two groups (+-1, the larger +1) so that what pairs say for being in the same one, or against it,
+// comes out: signs of the leading eigenvector (synchronisation over Z2, A. Singer, Applied and Computational
+// Harmonic Analysis 30, 2011).
+Eigen::VectorXd two_groups(const Eigen::MatrixXd& for_the_same) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(for_the_same);
+  const Eigen::VectorXd leading = solver.eigenvectors().rightCols<1>();
+  const Eigen::VectorXd group = (leading.array() > 0).select(Eigen::VectorXd::Ones(leading.size()), -1.0);
+  return group.sum() < 0 ? Eigen::VectorXd(-group) : group;
+}
+
+// Poses with some views turned by the one of `turns` for which pairs say so most clearly; none where they do
+// not.
+std::vector<Pose> as_pairs_say(const Problem& problem, const std::vector<int>& which,
+                               const std::vector<Pose>& pose, const std::vector<Pose>& turns) {
+  const PairSearch pairs(problem.views, problem.axes, problem.fitted, which);
+  const Agreement as_it_is =
+      agreement_of_pairs(pairs, pose, {Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()});
+  double most = kClear;
+  std::vector<Pose> better;
+  for (const Pose& turn : turns) {
+    const Agreement turned = agreement_of_pairs(pairs, pose, turn);
+    // Weighed by what both alignments show: parts that overlap more after a turn are not the likelier for it.
+    const Eigen::MatrixXd same = as_it_is.seen.cwiseMin(turned.seen).cwiseProduct(as_it_is.fit - turned.fit);
+    const Eigen::VectorXd group = two_groups(same);
+    const double gain = (group.dot(same * group) - same.sum()) / same.cwiseAbs().sum();
+    if (!(gain > most)) continue;
+    most = gain;
+    better = pose;
+    for (std::size_t k = 0; k < pose.size(); ++k)
+      if (group[static_cast<Eigen::Index>(k)] < 0) better[k] = turn * pose[k];
+  }
+  return better;
 }
 
 }  // namespace
@@ -52,6 +112,20 @@ std::vector<int> views_of_one_copy(const Problem& problem, const RoundState& sta
   for (Eigen::Index i = 0; i < u.size(); ++i)
     if ((u[i] > 0) == positive) out.push_back(static_cast<int>(i));
   return out;
+}
+
+std::vector<int> turn_back(const Problem& problem, RoundState& state) {
+  const std::vector<Pose> turns = half_turns(SelfSimilarity(state.mixture, problem.planar()), kLooksAlike);
+  if (turns.empty()) return {};
+  for (const std::size_t asked : {kFewAsked, kAsked}) {
+    std::vector<int> which = some_views(problem, asked);
+    const std::vector<Pose> better = as_pairs_say(problem, which, poses_of(state, which), turns);
+    if (better.empty()) return {};
+    if (asked == kFewAsked) continue;
+    for (std::size_t k = 0; k < which.size(); ++k) state.pose[static_cast<std::size_t>(which[k])] = better[k];
+    return which;
+  }
+  return {};
 }
 
 }  // namespace polar

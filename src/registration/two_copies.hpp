@@ -12,4 +12,9 @@ namespace polar {
 /// show; else none.
 std::vector<int> views_of_one_copy(const Problem& problem, const RoundState& state);
 
+/// Where pairs of views say that some of them lie half a turn off, an angle by which the template looks
+/// nearly the same: turns these back in `state` and returns the views, 50 at most, that were asked; else
+/// returns none.
+std::vector<int> turn_back(const Problem& problem, RoundState& state);
+
 }  // namespace polar

@@ -28,6 +28,9 @@ struct Match {
   /// Sum over both views of the mean, over its localisations, of ln(density under the other view) -
   /// ln(density of what was not seen). Natural logarithm; 0 where views have nothing to do with each other.
   double evidence = 0;
+  /// Localisations of either that lie where the other view looked, and the mean of these logarithms over
+  /// them: how well the views agree where both looked, however much that is.
+  double seen = 0, fit = 0;
 };
 
 class PairSearch {

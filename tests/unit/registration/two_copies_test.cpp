@@ -71,5 +71,40 @@ TEST(TwoCopies, roundsFromOneCopyBringAllViewsTogether) {
     EXPECT_LT(geodesic_angle(state.pose[i].rotation, global * scene.truth[i].rotation), 0.15) << i;
 }
 
+TEST(TurnBack, bringsTheViewsOfTheTurnedCopyBack) {
+  Doubled scene;
+  const Problems problems = make_problems(scene.views, 1);
+  RoundState state = scene.state;
+  EXPECT_EQ(turn_back(problems.plain, state), problems.plain.all);
+  const Eigen::Matrix3d global = state.pose[0].rotation * scene.truth[0].rotation.transpose();
+  for (std::size_t i = 0; i < 20; ++i)
+    EXPECT_LT(geodesic_angle(state.pose[i].rotation, global * scene.truth[i].rotation), 0.1) << i;
+}
+
+TEST(TurnBack, leavesOneCopyAlone) {
+  SiteScene scene;
+  scene.state.width = 0.05;
+  const Problems problems = make_problems(scene.views, 1);
+  RoundState state = scene.state;
+  EXPECT_TRUE(turn_back(problems.plain, state).empty());
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(state.pose[i].rotation, scene.state.pose[i].rotation);
+}
+
+// Where the structure has the half turn, either pose is right and pairs prefer none.
+TEST(TurnBack, leavesASymmetricStructureAlone) {
+  Doubled scene;
+  const Pose turn{so3_exp({0, 0, kPi}), {0, 0, 0}};
+  for (std::size_t i = 0; i < 20; ++i) {  // every second localisation on the other half
+    const Pose& pose = scene.truth[i];
+    for (Eigen::Index j = 0; j < 80; j += 2) {
+      const Eigen::Vector3d x = scene.views.view[i].points.col(j).cast<double>();
+      scene.views.view[i].points.col(j) = (pose.inverse() * (turn * (pose * x))).cast<float>();
+    }
+  }
+  const Problems problems = make_problems(scene.views, 1);
+  RoundState state = scene.state;
+  EXPECT_TRUE(turn_back(problems.plain, state).empty());
+}
+
 }  // namespace
 }  // namespace polar
