@@ -49,12 +49,13 @@ int random_starts(const StartContext& context) {
 ShortRuns::ShortRuns(const Problems& problems, const Autoencoder* model, const RegistrationOptions& options)
     : thinned_(start_context(problems.thinned)),
       plain_(start_context(problems.plain)),
-      fullest_(fullest_context(problems.plain)),
       model_(model),
       options_(options),
       random_(wants(options, "random") ? random_starts(plain_) : 0),
       posed_(random_ + (wants(options, "polar") ? 1 : 0) + (wants(options, "imaged") ? 1 : 0)),
-      all_(posed_ + (random_ > 0 && problems.plain.planar() ? kOneViews : 0)) {}
+      all_(posed_ + (random_ > 0 && problems.plain.planar() ? kOneViews : 0)) {
+  if (all_ > posed_) fullest_.emplace(fullest_context(problems.plain));
+}
 
 Hypothesis ShortRuns::run(int number) const {
   const AnnealingOptions usual = annealing(plain_);
@@ -76,12 +77,12 @@ Hypothesis ShortRuns::run(int number) const {
 // In the plane a template from nothing stays one of nothing where half of the labels are missing: what the
 // views share is finer than the blur that begins. The fullest views find each other.
 Hypothesis ShortRuns::one_view(int number) const {
-  AnnealingOptions options = annealing(fullest_);
+  AnnealingOptions options = annealing(*fullest_);
   options.first_width = 0.15, options.last_width = 0.06;
   options.first_beta = 0.5;
   options.reach = RoundOptions().stray_reach;
-  Hypothesis h = one_view_start(fullest_, options.centres, number, number - posed_);
-  anneal(fullest_, options, false, h);
+  Hypothesis h = one_view_start(*fullest_, options.centres, number, number - posed_);
+  anneal(*fullest_, options, false, h);
   return h;
 }
 
@@ -120,7 +121,7 @@ void ShortRuns::run_until(int count, Progress& progress, Checkpoint& checkpoint,
 }
 
 RoundState ShortRuns::state_of(const Hypothesis& h) const {
-  const StartContext& context = h.one_view ? fullest_ : h.crowded ? thinned_ : plain_;
+  const StartContext& context = h.one_view ? *fullest_ : h.crowded ? thinned_ : plain_;
   RoundState state;
   state.mixture = h.mixture;
   state.crowded = h.crowded;

@@ -1,6 +1,7 @@
 // The first stage of the competition: a short run of every start, on a few localisations of a few views.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "ab_initio.hpp"
@@ -38,7 +39,8 @@ class ShortRuns {
   Hypothesis one_view(int number) const;
   void settle(Hypothesis& h) const;
 
-  StartContext thinned_, plain_, fullest_;
+  StartContext thinned_, plain_;
+  std::optional<StartContext> fullest_;  // in the plane
   const Autoencoder* model_;
   const RegistrationOptions& options_;
   int random_, posed_, all_;

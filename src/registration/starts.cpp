@@ -181,24 +181,25 @@ class Competition {
   // Where the winner holds the structure twice, it is registered again from one copy.
   bool undouble() {
     if (!out_.finished) return true;
-    const bool crowded = out_.winner.crowded;
-    const std::vector<int> which = views_of_one_copy(problems_.of(crowded), out_.winner);
-    if (which.empty()) return true;
-    RoundState state = out_.winner;
-    fuse_anew(problems_.of(crowded), rounds_, which, state);
-    return once_more("one copy", crowded, std::move(state));
+    return once_more_from(views_of_one_copy(problems_.of(out_.winner.crowded), out_.winner), "one copy",
+                          out_.winner);
   }
 
   // Where the winner poses some views half a turn off: two starts may agree on that, because it is the same
   // views that look so.
   bool turned_back() {
     if (!out_.finished) return true;
-    const bool crowded = out_.winner.crowded;
     RoundState state = out_.winner;
-    const std::vector<int> which = turn_back(problems_.of(crowded), state);
+    const std::vector<int> which = turn_back(problems_.of(state.crowded), state);
+    return once_more_from(which, "turned back", std::move(state));
+  }
+
+  // From a template of the views `which` alone; nothing is done where there are none.
+  bool once_more_from(const std::vector<int>& which, const std::string& name, RoundState state) {
     if (which.empty()) return true;
+    const bool crowded = state.crowded;
     fuse_anew(problems_.of(crowded), rounds_, which, state);
-    return once_more("turned back", crowded, std::move(state));
+    return once_more(name, crowded, std::move(state));
   }
 
   const Problems& problems_;

@@ -138,19 +138,13 @@ SymmetryFrame best_frame(const SelfSimilarity& t, const std::string& group, doub
 }
 
 std::vector<Pose> half_turns(const SelfSimilarity& t, double worthwhile) {
-  std::vector<std::pair<double, Pose>> found;
+  const Pose half{so3_exp(kPi * Axis::UnitZ()), Eigen::Vector3d::Zero()};
+  std::vector<Pose> out;
   for (const Axis& axis : best_axes(t, 2)) {
     const SymmetryFrame f = refined(t, "C2", swept(t, "C2", axis));
-    const Pose half{so3_exp(kPi * Axis::UnitZ()), Eigen::Vector3d::Zero()};
     if (f.similarity >= worthwhile)
-      found.emplace_back(f.similarity,
-                         f.canonical_from_template.inverse() * half * f.canonical_from_template);
+      out.push_back(f.canonical_from_template.inverse() * half * f.canonical_from_template);
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<Pose> out;
-  out.reserve(found.size());
-  for (const auto& [similarity, motion] : found) out.push_back(motion);
   return out;
 }
 

@@ -117,15 +117,15 @@ std::vector<int> views_of_one_copy(const Problem& problem, const RoundState& sta
 std::vector<int> turn_back(const Problem& problem, RoundState& state) {
   const std::vector<Pose> turns = half_turns(SelfSimilarity(state.mixture, problem.planar()), kLooksAlike);
   if (turns.empty()) return {};
-  for (const std::size_t asked : {kFewAsked, kAsked}) {
-    std::vector<int> which = some_views(problem, asked);
-    const std::vector<Pose> better = as_pairs_say(problem, which, poses_of(state, which), turns);
-    if (better.empty()) return {};
-    if (asked == kFewAsked) continue;
-    for (std::size_t k = 0; k < which.size(); ++k) state.pose[static_cast<std::size_t>(which[k])] = better[k];
-    return which;
-  }
-  return {};
+  const auto ask = [&](const std::vector<int>& which) {
+    return as_pairs_say(problem, which, poses_of(state, which), turns);
+  };
+  if (ask(some_views(problem, kFewAsked)).empty()) return {};
+  std::vector<int> which = some_views(problem, kAsked);
+  const std::vector<Pose> better = ask(which);
+  if (better.empty()) return {};
+  for (std::size_t k = 0; k < which.size(); ++k) state.pose[static_cast<std::size_t>(which[k])] = better[k];
+  return which;
 }
 
 }  // namespace polar
