@@ -54,6 +54,7 @@ def load(path: Path, common):
         known_keys(p, ("label", "simulate", "run", "levels", "series", "peers"), path)
         points.append(Point(**p))
     objects = entry.get("objects", common["objects"])
+    objects = {**common["objects"], **objects} if objects else {}
     return Study(name=path.stem, title=entry["title"], paper=entry["paper"], text=entry["text"].strip(),
                  kind=entry["kind"], axis=entry.get("axis", ""), points=points,
                  views={**common["views"], **entry.get("views", {})}, objects=objects,
