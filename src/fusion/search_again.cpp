@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "polar/core/parallel.hpp"
 #include "polar/core/so3.hpp"
@@ -17,11 +18,28 @@ struct Outcome {
   double margin = 0;
 };
 
+bool worse(const RefinedPose& a, const RefinedPose& b) { return a.log_likelihood < b.log_likelihood; }
+
+std::vector<std::uint32_t> first_of(const std::vector<std::uint32_t>& list, int most) {
+  const auto count = std::min(list.size(), static_cast<std::size_t>(most));
+  return {list.begin(), list.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
 // Angle between template_from_view rotations, the nearest of their images.
 double angle_modulo(const RotationGroup& group, const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   double least = geodesic_angle(a, b);
   for (const Eigen::Matrix3d& g : group) least = std::min(least, geodesic_angle(g * a, b));
   return least;
+}
+
+// Those that lie no farther below the best.
+std::vector<RefinedPose> within(double doubt, const std::vector<RefinedPose>& candidates) {
+  std::vector<RefinedPose> out;
+  if (candidates.empty()) return out;
+  const double best = std::max_element(candidates.begin(), candidates.end(), worse)->log_likelihood;
+  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(out),
+               [&](const RefinedPose& p) { return p.log_likelihood >= best - doubt; });
+  return out;
 }
 
 // The best few basins. Under a group most of them are images of one: as many are added that are not, so that
@@ -43,9 +61,7 @@ std::vector<Basin> basins_modulo(const GridScores& scores, const SearchGrid& gri
 
 Outcome best_of(const std::vector<RefinedPose>& candidates, const RefinedPose& current,
                 const SearchAgainOptions& options, std::size_t localisations) {
-  const auto top = std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-    return a.log_likelihood < b.log_likelihood;
-  });
+  const auto top = std::max_element(candidates.begin(), candidates.end(), worse);
   const bool better = top != candidates.end() && top->log_likelihood > current.log_likelihood;  // eq. 14
   const RefinedPose& best = better ? *top : current;
   Outcome out{best.view_from_template.inverse(), false, INFINITY};
@@ -76,9 +92,7 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
   const BlockedMixture blocked(mixture);
   std::vector<Outcome> outcome(views.view.size());
   parallel_for(views.view.size(), [&](std::size_t i) {
-    std::vector<std::uint32_t> few = subset[i];
-    if (few.size() > static_cast<std::size_t>(options.most_localisations))
-      few.resize(static_cast<std::size_t>(options.most_localisations));
+    const std::vector<std::uint32_t> few = first_of(subset[i], options.most_localisations);
     outcome[i].pose = poses[i];
     if (few.empty()) return;
     const auto seen = [&](const std::vector<std::uint32_t>& which) {
@@ -100,7 +114,19 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
     std::vector<RefinedPose> candidates;
     for (const Basin& basin : basins_modulo(scores, grid, turn, options))
       candidates.push_back(refined(basin.template_from_view));
-    outcome[i] = best_of(candidates, refined(poses[i]), options, few.size());
+    const RefinedPose current = refined(poses[i]);
+    outcome[i] = best_of(candidates, current, options, few.size());
+    const bool clear = outcome[i].margin * static_cast<double>(few.size()) >= options.doubt;
+    const auto many = first_of(subset[i], options.most_judging);
+    if (clear || many.size() <= few.size()) return;
+    const KernelLocalisations judging = kernel_localisations(views.view[i], axes[i], noise, many);
+    const auto again = [&](const RefinedPose& p) {
+      return refine_pose(frame, judging, p.view_from_template, blocked.background(), noise.planar,
+                         options.judging_evaluations);
+    };
+    std::vector<RefinedPose> rejudged;
+    for (const RefinedPose& p : within(options.doubt, candidates)) rejudged.push_back(again(p));
+    outcome[i] = best_of(rejudged, again(current), options, many.size());
   });
   SearchAgainReport report;
   for (std::size_t i = 0; i < outcome.size(); ++i) {

@@ -17,8 +17,12 @@ namespace polar {
 struct SearchAgainOptions {
   int basins = 8;                // M of the paper
   int evaluations = 8;           // of the refinement of a basin
-  int most_localisations = 160;  // of a view that the search looks at
+  int most_localisations = 160;  // of a view that the search looks at: enough to find basins
   int coarse_localisations = 0;  // looked at before the promising rotations are known; 0: all of the above
+  // Basins whose log likelihoods differ by less over so few localisations are told apart by more of them.
+  double doubt = 8;
+  int most_judging = 1000;
+  int judging_evaluations = 4;
   int sigma_classes = 3;
   double escape_rad = 0.2617993877991494;  // T_R = 15 degrees
   double escape_gain = 2;  // log likelihood that a move must gain to count: less is a symmetric twin or a tie
