@@ -18,7 +18,7 @@ PEERS = {"Open3D FGR": ("open3d_pairs", ["--method", "fgr"], 900),
          "Open3D RANSAC": ("open3d_pairs", ["--method", "ransac"], 900),
          "probreg CPD": ("probreg_pairs", ["--method", "cpd"], 900),
          "probreg FilterReg": ("probreg_pairs", ["--method", "filterreg"], 900),
-         "the authors' POLAR, 2000 rotations": ("authors_polar", ["--rotations", "2000", "--neighbours", "32"], 3600)}
+         "the authors' POLAR, 2000 rotations": ("authors_polar", ["--rotations", "2000", "--neighbours", "32"], 2400)}
 ALL = (*OWN, *PEERS)
 NOT_INSTALLED = 77  # exit code of a module whose program is missing
 NICENESS = 10       # they take long
