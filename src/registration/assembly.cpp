@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "polar/core/median.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 #include "polar/fusion/maximisation.hpp"
@@ -26,13 +25,6 @@ constexpr double kContradiction = 0.15;  // evidence that the winner's alignment
 constexpr double kTolerated = 0.03;      // share of contradicted matches: pairs err too
 constexpr double kWidths[] = {0.15, 0.15, 0.12, 0.12, 0.09, 0.09};  // of the sweeps that relax an assembly
 constexpr std::size_t kRelaxedLocalisations = 200;                  // of a view
-
-std::size_t median_size(const Subsets& subsets, const std::vector<int>& which) {
-  std::vector<std::size_t> size;
-  size.reserve(which.size());
-  for (const int i : which) size.push_back(subsets[static_cast<std::size_t>(i)].size());
-  return size.empty() ? 0 : upper_median(std::move(size));
-}
 
 Eigen::Matrix3f turn_of(const Problem& problem, std::size_t view) {
   return grid_turn(problem.planar(), KeyedRandom(problem.seed, view, kPairTurnStage));

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "evenness.hpp"
+#include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 
@@ -66,6 +67,13 @@ std::vector<int> some_views(const Problem& problem, std::size_t most) {
   std::vector<int> few(n);
   for (std::size_t k = 0; k < n; ++k) few[k] = static_cast<int>(k * problem.size() / n);
   return few;
+}
+
+std::size_t median_size(const Subsets& subsets, const std::vector<int>& which) {
+  std::vector<std::size_t> size;
+  size.reserve(which.size());
+  for (const int i : which) size.push_back(subsets[static_cast<std::size_t>(i)].size());
+  return size.empty() ? 0 : upper_median(std::move(size));
 }
 
 Subsets first_of(const Subsets& subsets, std::size_t most) {

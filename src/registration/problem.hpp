@@ -38,6 +38,9 @@ Problems make_problems(const Views& views, std::uint64_t seed);
 /// At most `most` views, evenly through the set: neighbours may share a field of view.
 std::vector<int> some_views(const Problem& problem, std::size_t most);
 
+/// The median length of the lists of the views `which`; 0 of none.
+std::size_t median_size(const Subsets& subsets, const std::vector<int>& which);
+
 /// The first `most` of every list.
 Subsets first_of(const Subsets& subsets, std::size_t most);
 

@@ -7,6 +7,7 @@
 #include "assembly.hpp"
 #include "finish.hpp"
 #include "short_runs.hpp"
+#include "sides.hpp"
 #include "states.hpp"
 #include "two_copies.hpp"
 
@@ -45,12 +46,12 @@ class Competition {
 
   bool run() {
     if (!run_until_two_agree()) return false;
-    if (out_.agreement > 0) return without_strands() && turned_back();
+    if (out_.agreement > 0) return without_strands() && side_turned() && turned_back();
     if (!run_until(runs_.all()) || !register_best(finalists(), false) ||
         !register_best(kOneViewFinalists, true))
       return false;
     judge();
-    return without_strands() && ask_pairs() && undouble() && turned_back();
+    return without_strands() && ask_pairs() && undouble() && side_turned() && turned_back();
   }
   StartsOutcome outcome() { return std::move(out_); }
 
@@ -183,6 +184,14 @@ class Competition {
     if (!out_.finished) return true;
     return once_more_from(views_of_one_copy(problems_.of(out_.winner.crowded), out_.winner), "one copy",
                           out_.winner);
+  }
+
+  // Where crops of one side are posed against those of the other.
+  bool side_turned() {
+    if (!out_.finished) return true;
+    RoundState state = out_.winner;
+    const std::vector<int> which = turn_side(problems_.of(state.crowded), state);
+    return once_more_from(which, "side turned", std::move(state));
   }
 
   // Where the winner poses some views half a turn off: two starts may agree on that, because it is the same
