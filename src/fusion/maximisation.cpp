@@ -145,6 +145,7 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
                                            : orbits(mixture.centre, options.group);
   average_over(orbit, options.group, centres, sums);
 
+  const bool use_support = options.support && !data.cut();  // a part that few views show is no strand
   std::vector<double> strength(centres, 0.0);
   double total_weight = 0;
   for (std::size_t k = 0; k < centres; ++k) {
@@ -154,10 +155,10 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
     const double support = sums.share_sq[k] > 0 ? sums.share[k] * sums.share[k] / sums.share_sq[k] /
                                                       static_cast<double>(data.size())
                                                 : 0;
-    strength[k] = options.support ? s(0) * support : s(0);
-    const double weight = options.keep_weights ? static_cast<double>(mixture.weight[col])
-                                               : (options.free_weights ? s(0) : 1.0) *
-                                                     (options.support ? support * support : 1.0);
+    strength[k] = use_support ? s(0) * support : s(0);
+    const double weight = options.keep_weights
+                              ? static_cast<double>(mixture.weight[col])
+                              : (options.free_weights ? s(0) : 1.0) * (use_support ? support * support : 1.0);
     mixture.weight[col] = static_cast<float>(weight);
     total_weight += weight;
     Eigen::Matrix3d a;
@@ -172,6 +173,7 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
   mixture.outlier_fraction = std::clamp(
       (sums.localisations - sums.inliers + kPseudoOutliers) / (sums.localisations + kPseudoLocalisations),
       options.smallest_outlier_fraction, 0.95);
+  if (data.cut()) weigh_by_exposure(data, poses, mixture);
   if (options.group.empty())
     sow_again(mixture, strength, options);
   else

@@ -10,8 +10,31 @@ namespace polar {
 
 namespace {
 
-void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen::Matrix3f& rotation,
-           float step, Eigen::Vector3f& translation, float& best) {
+// Scores of a view at translations, with what its cut gains.
+class Scorer {
+ public:
+  Scorer(const DirectionVolumes& volumes, const CutTable* cuts, const ViewReach* reach)
+      : volumes_(volumes), cuts_(reach != nullptr ? cuts : nullptr), reach_(reach) {}
+
+  void operator()(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
+                  const std::vector<Eigen::Vector3f>& translation, float* score) {
+    volumes_.scores(view, direction, rotation, translation, score);
+    if (cuts_ == nullptr) return;
+    share_.resize(translation.size());
+    cuts_->visible(*reach_, rotation, translation, share_.data());
+    for (std::size_t t = 0; t < share_.size(); ++t)
+      score[t] += CutTable::gain(share_[t], static_cast<std::size_t>(view.count));
+  }
+
+ private:
+  const DirectionVolumes& volumes_;
+  const CutTable* cuts_;
+  const ViewReach* reach_;
+  std::vector<float> share_;
+};
+
+void climb(const DirectionVolumes& volumes, Scorer& scorer, const SearchView& view,
+           const Eigen::Matrix3f& rotation, float step, Eigen::Vector3f& translation, float& best) {
   constexpr int kMostSteps = 6;
   const int direction = volumes.direction_of(view, rotation);
   std::vector<float> there;
@@ -23,7 +46,7 @@ void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen:
       for (std::size_t a = 1; a < shifts.size(); ++a)
         around.push_back(here + shifts[a]);  // the first is none
       there.resize(around.size());
-      volumes.scores(view, direction, rotation, around, there.data());
+      scorer(view, direction, rotation, around, there.data());
       for (std::size_t a = 0; a < around.size(); ++a)
         if (there[a] > best) best = there[a], translation = around[a];
       if (translation == here) break;
@@ -57,7 +80,9 @@ std::vector<Eigen::Vector3f> lattice_shifts(double reach, double spacing, bool p
 }
 
 GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, const SearchGrid& grid,
-                      const Eigen::Matrix3f& turn, const SearchOptions& options, const SearchView* closer) {
+                      const Eigen::Matrix3f& turn, const SearchOptions& options, const SearchView* closer,
+                      const ViewReach* reach) {
+  Scorer scorer(volumes, options.cuts, reach);
   const std::size_t n = grid.rotation.size();
   GridScores out;
   out.log_likelihood.resize(n);
@@ -72,7 +97,7 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
   std::vector<float> there(options.translation.size());
   for (std::size_t d = 0; d < by_direction.size(); ++d)
     for (const std::size_t i : by_direction[d]) {
-      volumes.scores(view, static_cast<int>(d), turned[i], options.translation, there.data());
+      scorer(view, static_cast<int>(d), turned[i], options.translation, there.data());
       const auto best = std::max_element(there.begin(), there.end());  // the first of equal ones
       out.log_likelihood[i] = *best;
       out.translation[i] = options.translation[static_cast<std::size_t>(best - there.begin())];
@@ -92,8 +117,9 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
     const auto i = static_cast<std::size_t>(order[k]);
     float& best = out.log_likelihood[i];
     if (closer != nullptr)
-      best = volumes.score(*closer, volumes.direction_of(*closer, turned[i]), turned[i], out.translation[i]);
-    climb(volumes, closer != nullptr ? *closer : view, turned[i], options.step, out.translation[i], best);
+      scorer(*closer, volumes.direction_of(*closer, turned[i]), turned[i], {out.translation[i]}, &best);
+    climb(volumes, scorer, closer != nullptr ? *closer : view, turned[i], options.step, out.translation[i],
+          best);
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "polar/core/parallel.hpp"
 #include "polar/core/so3.hpp"
@@ -90,6 +91,9 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
   const SigmaClasses classes = sigma_classes(views, axes, noise, options.sigma_classes);
   const DirectionVolumes volumes(mixture, classes, directions_for(classes, noise.planar), noise.planar);
   const BlockedMixture blocked(mixture);
+  SearchOptions on_grid = options.grid;
+  std::optional<CutTable> cuts;
+  if (options.reach != nullptr) on_grid.cuts = &cuts.emplace(mixture);
   std::vector<Outcome> outcome(views.view.size());
   parallel_for(views.view.size(), [&](std::size_t i) {
     const std::vector<std::uint32_t> few = first_of(subset[i], options.most_localisations);
@@ -99,17 +103,23 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
       return search_view(views.view[i], axes[i], noise, classes, which);
     };
     const SearchView all = seen(few);
+    const ViewReach* reach = options.reach != nullptr ? &(*options.reach)[i] : nullptr;
+    ViewFrame frame(blocked);
+    const auto uphill = [&](const KernelLocalisations& of, const Pose& start, int evaluations) {
+      ViewCut cut;
+      if (reach != nullptr) cut = likeliest_cut(*cuts, *reach, start.inverse(), of.size());
+      return refine_pose(frame, of, start, blocked.background(), noise.planar, evaluations, nullptr,
+                         reach != nullptr ? &cut : nullptr);
+    };
     const auto coarse = static_cast<std::size_t>(options.coarse_localisations);
     const bool in_two_steps = coarse > 0 && coarse < few.size();
     const GridScores scores =
         in_two_steps ? score_grid(volumes, seen({few.begin(), few.begin() + options.coarse_localisations}),
-                                  grid, turn, options.grid, &all)
-                     : score_grid(volumes, all, grid, turn, options.grid);
+                                  grid, turn, on_grid, &all, reach)
+                     : score_grid(volumes, all, grid, turn, on_grid, nullptr, reach);
     const KernelLocalisations localisations = kernel_localisations(views.view[i], axes[i], noise, few);
-    ViewFrame frame(blocked);
     const auto refined = [&](const Pose& start) {
-      return refine_pose(frame, localisations, start.inverse(), blocked.background(), noise.planar,
-                         options.evaluations);
+      return uphill(localisations, start.inverse(), options.evaluations);
     };
     std::vector<RefinedPose> candidates;
     for (const Basin& basin : basins_modulo(scores, grid, turn, options))
@@ -121,8 +131,7 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
     if (clear || many.size() <= few.size()) return;
     const KernelLocalisations judging = kernel_localisations(views.view[i], axes[i], noise, many);
     const auto again = [&](const RefinedPose& p) {
-      return refine_pose(frame, judging, p.view_from_template, blocked.background(), noise.planar,
-                         options.judging_evaluations);
+      return uphill(judging, p.view_from_template, options.judging_evaluations);
     };
     std::vector<RefinedPose> rejudged;
     for (const RefinedPose& p : within(options.doubt, candidates)) rejudged.push_back(again(p));

@@ -14,6 +14,7 @@ namespace {
 constexpr int kBatch = 256;  // localisations whose moments fit the first-level cache
 constexpr double kFirstDamping = 0.1;
 constexpr double kLargestDamping = 1e6;
+constexpr double kEdge = 0.02;       // of a cut, particle radii: half of what its smooth edge spans
 constexpr double kConverged = 1e-5;  // step in radians and particle radii: a hundredth of any real accuracy
 
 // Score of one localisation: d ln p / d(w, v). Moments are sums over centres of density-weighted 1, mu, mu
@@ -96,14 +97,48 @@ PoseDerivatives pose_derivatives(ViewFrame& frame, const KernelLocalisations& vi
   return d;
 }
 
+ViewCut likeliest_cut(const CutTable& cuts, const ViewReach& reach, const Pose& template_from_view,
+                      std::size_t localisations) {
+  const Cut cut = cuts.likeliest(reach, template_from_view);
+  return {cut.normal.cast<double>(), cut.offset, static_cast<double>(localisations)};
+}
+
+void add_cut(ViewFrame& frame, const Pose& pose, const ViewCut& cut, PoseDerivatives& d) {
+  const kernel::Centres& c = frame.at(pose);
+  const int n = c.blocks * kernel::kBlock;
+  double all = 0, shown = 0;
+  Vector6 slope = Vector6::Zero();
+  for (int k = 0; k < n; ++k) {
+    if (c.weight[k] == 0) continue;
+    const Eigen::Vector3d y(c.x[k], c.y[k], c.z[k]);
+    const double w = c.weight[k], inside = 1 / (1 + std::exp((cut.normal.dot(y) - cut.offset) / kEdge));
+    all += w, shown += w * inside;
+    const double there = w * inside * (1 - inside) / kEdge;
+    slope.head<3>() -= there * y.cross(cut.normal);
+    slope.tail<3>() -= there * cut.normal;
+  }
+  const double share = shown / all;
+  d.log_likelihood -= cut.worth * std::log(std::max(share, static_cast<double>(kLeastShown)));
+  if (share < static_cast<double>(kLeastShown)) return;
+  slope /= shown;
+  d.gradient -= cut.worth * slope;
+  d.fisher += cut.worth * slope * slope.transpose();
+}
+
 Pose perturbed(const Pose& pose, const Vector6& step) {
   return Pose{so3_exp(step.head<3>()), step.tail<3>()} * pose;
 }
 
 RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const Pose& start,
-                        float background, bool planar, int max_evaluations, const float* weight) {
+                        float background, bool planar, int max_evaluations, const float* weight,
+                        const ViewCut* cut) {
+  const auto derivatives = [&](const Pose& pose) {
+    PoseDerivatives d = pose_derivatives(frame, view, pose, background, weight);
+    if (cut != nullptr) add_cut(frame, pose, *cut, d);
+    return d;
+  };
   RefinedPose best{start, 0, 1};
-  PoseDerivatives at = pose_derivatives(frame, view, start, background, weight);
+  PoseDerivatives at = derivatives(start);
   if (planar) keep_in_plane(at);
   best.log_likelihood = at.log_likelihood;
   double damping = kFirstDamping;
@@ -114,7 +149,7 @@ RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const
     if (!step.allFinite()) break;
     if (step.norm() < kConverged) break;
     const Pose next = perturbed(best.view_from_template, step);
-    PoseDerivatives there = pose_derivatives(frame, view, next, background, weight);
+    PoseDerivatives there = derivatives(next);
     ++best.evaluations;
     if (there.log_likelihood > best.log_likelihood) {
       if (planar) keep_in_plane(there);

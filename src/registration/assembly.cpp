@@ -83,7 +83,7 @@ bool Assembly::contradicts(const std::vector<Pose>& template_from_view) const {
   return denied > kTolerated * asked;
 }
 
-RoundState Assembly::assembled(const RoundOptions& options, Progress& progress) const {
+RoundState Assembly::assembled(const RoundOptions& options, bool cut, Progress& progress) const {
   const std::size_t n = which_.size();
   std::vector<Joint> joints;
   const auto pairs = static_cast<int>(n * (n - 1) / 2);
@@ -97,7 +97,9 @@ RoundState Assembly::assembled(const RoundOptions& options, Progress& progress) 
   std::vector<Pose> pose = spanning_poses(n, std::move(joints));
 
   RoundState state;
-  state.parts = true;
+  state.far = true;
+  state.cut = cut;
+  state.crowded = !cut;  // a part that few views show would pass for a strand
   const Subsets few = first_of(problem_.fitted, kRelaxedLocalisations);
   state.mixture = scattered_mixture(problem_, few, which_, pose, centres_for(problem_), 1);
   state.mixture.outlier_fraction = first_outlier_fraction(state.crowded);
@@ -105,7 +107,8 @@ RoundState Assembly::assembled(const RoundOptions& options, Progress& progress) 
     NoiseModel noise;
     noise.planar = problem_.planar();
     noise.width = std::max(width, options.first_width);
-    const FusionData data(problem_.views, problem_.axes, noise, few, which_);
+    FusionData data(problem_.views, problem_.axes, noise, few, which_);
+    if (cut) data.set_cut(problem_.reach, which_);
     MaximisationOptions em = fusion_options(state.crowded, noise.width);
     em.support = false;  // a part that few views show is no strand
     em.seed = problem_.seed;

@@ -31,9 +31,9 @@ class Assembly {
   /// little.
   bool contradicts(const std::vector<Pose>& template_from_view) const;
 
-  /// A template of the assembled views and their poses; the other views are at rest.
-  /// Meaningless when cancelled.
-  RoundState assembled(const RoundOptions& options, Progress& progress) const;
+  /// A template of the assembled views and their poses; the other views are at rest. `cut`: views are cut by
+  /// planes, and none holds strands. Meaningless when cancelled.
+  RoundState assembled(const RoundOptions& options, bool cut, Progress& progress) const;
 
  private:
   const Problem& problem_;

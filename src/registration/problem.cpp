@@ -14,7 +14,8 @@ namespace polar {
 
 namespace {
 constexpr std::uint32_t kShuffleStage = 20, kThinningStage = 25;
-constexpr std::size_t kHeldOutShare = 5;  // one localisation in five judges
+constexpr std::size_t kReachLocalisations = 500;  // that tell how far a view reaches
+constexpr std::size_t kHeldOutShare = 5;          // one localisation in five judges
 
 // One number that is none would spoil every sum over all views.
 bool is_finite(const View& view) {
@@ -23,11 +24,19 @@ bool is_finite(const View& view) {
     finite = finite && std::all_of(c.begin(), c.end(), [](float v) { return std::isfinite(v); });
   return finite;
 }
+
+Eigen::Matrix3Xf first_points(const View& view, const std::vector<std::uint32_t>& order) {
+  Eigen::Matrix3Xf out(3, static_cast<Eigen::Index>(std::min(order.size(), kReachLocalisations)));
+  for (Eigen::Index j = 0; j < out.cols(); ++j)
+    out.col(j) = view.points.col(order[static_cast<std::size_t>(j)]);
+  return out;
+}
 }  // namespace
 
 Problems make_problems(const Views& views, std::uint64_t seed) {
   const std::size_t n = views.view.size();
-  Problem plain{views, {}, {}, {}, {}, {}, seed, 0};
+  Problem plain{views, {}, {}, {}, {}, {}, {}, seed, 0};
+  plain.reach.resize(n);
   plain.axes.resize(n), plain.shuffled.resize(n), plain.fitted.resize(n), plain.held_out.resize(n);
   Problem thinned = plain;
   parallel_for(n, [&](std::size_t i) {
@@ -38,6 +47,7 @@ Problems make_problems(const Views& views, std::uint64_t seed) {
     thinned.shuffled[i] = sampling_order(weight, KeyedRandom(seed, i, kThinningStage));
     plain.shuffled[i] =
         sampling_order(std::vector<double>(weight.size(), 1.0), KeyedRandom(seed, i, kShuffleStage));
+    plain.reach[i] = reach_of(first_points(views.view[i], plain.shuffled[i]));
     std::vector<std::uint32_t> even = thinned.shuffled[i];
     even.resize(std::min(even.size(), static_cast<std::size_t>(
                                           std::ceil(std::accumulate(weight.begin(), weight.end(), 0.0)))));
@@ -57,6 +67,7 @@ Problems make_problems(const Views& views, std::uint64_t seed) {
     plain.all.push_back(static_cast<int>(i));
     plain.localisations += static_cast<double>(views.view[i].covariance.size());
   }
+  thinned.reach = plain.reach;
   thinned.axes = plain.axes, thinned.held_out = plain.held_out;
   thinned.all = plain.all, thinned.localisations = plain.localisations;
   return {std::move(thinned), std::move(plain)};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "polar/core/view.hpp"
+#include "polar/fusion/cuts.hpp"
 #include "polar/fusion/fusion_data.hpp"
 
 namespace polar {
@@ -16,6 +17,7 @@ struct Problem {
   Subsets shuffled;  // all localisations of each view in a keyed random order: any prefix is a sample
   Subsets fitted;    // the share the template is fitted to while anything is still chosen by likelihood
   Subsets held_out;  // the rest: judges starts, calibration and the number of centres
+  std::vector<ViewReach> reach;  // of every view
   std::vector<int> all;
   std::uint64_t seed = 1;
   double localisations = 0;

@@ -26,7 +26,8 @@ constexpr const char* kUnderWay = "rounds";
 // Template and poses of the views `which`; the others are as they were.
 void sweep(const Problem& problem, const Subsets& few, const std::vector<int>& which, const NoiseModel& noise,
            int sweeps, int round, RoundState& state) {
-  const FusionData data(problem.views, problem.axes, noise, few, which);
+  FusionData data(problem.views, problem.axes, noise, few, which);
+  if (state.cut) data.set_cut(problem.reach, which);
   std::vector<Pose> pose = poses_of(state, which);
   for (int s = 0; s < sweeps; ++s) {
     MaximisationOptions em = fusion_options(state.crowded, noise.width);
@@ -44,6 +45,7 @@ SearchAgainReport search(const Problem& problem, const SearchGrid& grid, const R
   SearchAgainOptions search;
   search.basins = options.basins;
   search.group = state.group;
+  if (state.cut) search.reach = &problem.reach;
   search.most_localisations = options.search_localisations;
   search.grid.translation =
       shifts_within(state.one_view ? options.stray_reach : 0, options.shift, problem.planar());
@@ -84,8 +86,8 @@ void fuse_anew(const Problem& problem, const RoundOptions& options, const std::v
 std::vector<std::size_t> search_all(const Problem& problem, const SearchGrid& grid,
                                     const RoundOptions& options, const NoiseModel& noise,
                                     const Subsets& subset, RoundState& state) {
-  const bool far = state.parts && state.rounds == 0;
-  SearchAgainReport report = search(problem, grid, options, noise, subset, far, state);
+  SearchAgainReport report = search(problem, grid, options, noise, subset, state.far, state);
+  state.far = false;
   state.margin = std::move(report.margin);
   state.escaped = static_cast<int>(report.escaped.size());
   return std::move(report.escaped);
@@ -135,7 +137,7 @@ bool run_rounds(const Problem& problem, const SearchGrid& grid, const RoundOptio
     }
     sweep(problem, few, problem.all, noise, options.sweeps, round, at);
     at.width = noise.width;
-    at.held_out = held_out_score(problem, at.mixture, at.pose, noise);
+    at.held_out = held_out_score(problem, at.mixture, at.pose, noise, at.cut);
     if (at.held_out > best.held_out)
       best = at;
     else if (!searching)

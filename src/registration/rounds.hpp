@@ -46,7 +46,8 @@ struct RoundState {
   int rounds = 0;
   int escaped = 0;             // in the last search
   int twins = 0;               // of these, in the last search of all, to where the template looks the same
-  bool parts = false;          // views show parts of the structure: the first search shifts them far
+  bool cut = false;            // views are cut by planes (polar/fusion/cuts.hpp)
+  bool far = false;            // the next search shifts views far: they show parts of the structure
   bool structureless = false;  // held-out localisations are explained no better than by a cloud
 };
 

@@ -9,6 +9,7 @@
 #include "short_runs.hpp"
 #include "sides.hpp"
 #include "states.hpp"
+#include "template_tools.hpp"
 #include "two_copies.hpp"
 
 namespace polar {
@@ -22,13 +23,18 @@ constexpr double kFinalistLocalisations =
 // What two random starts share is neither a wrong basin nor two copies, which differ from start to start. A
 // symmetric structure never agrees so, because its views are turned at will.
 constexpr double kAgreement = 0.95;
+constexpr double kLooksCut =
+    0.05;  // nats a localisation that the likeliest cuts explain: 0.08 to 0.14 of cut views
+constexpr double kMostStrands = 0.2;         // share of outliers among cut views; among strands 0.16 to 0.5
 constexpr std::size_t kViewsThatAgree = 10;  // fewer may agree by chance
 
-double score_of_parts(const Problem& problem, const RoundState& state) {
+// Of held-out localisations, views taken as parts of the structure: cut by planes or anyhow.
+double score_of_parts(const Problem& problem, const RoundState& state, bool cut) {
   NoiseModel noise;
   noise.planar = problem.planar();
   noise.width = state.width;
-  return held_out_score_of_parts(problem, noise, state);
+  return cut ? held_out_score(problem, state.mixture, state.pose, noise, true)
+             : held_out_score_of_parts(problem, noise, state);
 }
 
 // Each step is false where it was cancelled; the checkpoint then holds what was done.
@@ -46,7 +52,7 @@ class Competition {
 
   bool run() {
     if (!run_until_two_agree()) return false;
-    if (out_.agreement > 0) return without_strands() && side_turned() && turned_back();
+    if (out_.agreement > 0) return without_strands() && ask_pairs_of_cut() && side_turned() && turned_back();
     if (!run_until(runs_.all()) || !register_best(finalists(), false) ||
         !register_best(kOneViewFinalists, true))
       return false;
@@ -157,24 +163,42 @@ class Competition {
     return once_more("without strands", false, std::move(state));
   }
 
+  // Whether the template reaches farther than views do, by planes that cut them. A strand reaches anywhere:
+  // where there are many, nothing is known of planes.
+  bool looks_cut() const {
+    if (!out_.finished || problems_.plain.planar()) return false;
+    const RoundState& winner = out_.winner;
+    return !winner.crowded && winner.mixture.outlier_fraction < kMostStrands &&
+           mean_gain_of_cuts(problems_.plain, winner.mixture, winner.pose) > kLooksCut;
+  }
+
+  // Two starts may agree on cut views that are laid over each other, because it is the same ones that look
+  // so.
+  bool ask_pairs_of_cut() {
+    if (!looks_cut()) return true;
+    return ask_pairs() && (!out_.winner.cut || undouble());
+  }
+
   // Pairs of views have the last word: where they contradict the winner, or there is none, what they say is
   // registered too. Both are then judged as parts.
   bool ask_pairs() {
     if (!wants(options_, "assembled")) return true;
-    const Problem& problem = problems_.thinned;
+    const bool cut = looks_cut();
+    const Problem& problem = problems_.of(!cut);
     PartOfCheckpoint here(checkpoint_, "finalist assembled");
     RoundState state;
     if (!restore(here, "pairs", state)) {
       const Assembly assembly(problem);
-      if (out_.finished && !assembly.contradicts(out_.winner.pose)) return true;
-      state = assembly.assembled(rounds_, progress_);
+      const bool doubtful = !out_.finished || (cut && out_.agreement == 0);
+      if (!doubtful && !assembly.contradicts(out_.winner.pose)) return true;
+      state = assembly.assembled(rounds_, cut, progress_);
       if (progress_.cancelled()) return false;
       keep(here, "pairs", state);
     }
-    if (!registered("assembled", true, state)) return false;
-    StartReport report{"assembled", score_of_parts(problem, state), state.held_out, false};
+    if (!registered("assembled", !cut, state)) return false;
+    StartReport report{"assembled", score_of_parts(problem, state, cut), state.held_out, false};
     report.won = !out_.finished || report.held_out_log_likelihood >
-                                       score_of_parts(problems_.of(out_.winner.crowded), out_.winner);
+                                       score_of_parts(problems_.of(out_.winner.crowded), out_.winner, cut);
     enter(report, std::move(state));
     return true;
   }
@@ -208,6 +232,7 @@ class Competition {
     if (which.empty()) return true;
     const bool crowded = state.crowded;
     fuse_anew(problems_.of(crowded), rounds_, which, state);
+    state.far = state.cut;
     return once_more(name, crowded, std::move(state));
   }
 

@@ -49,9 +49,9 @@ void fields(Archive& archive, Hypothesis& value) {
 template <class Archive>
 void fields(Archive& archive, RoundState& value) {
   auto& [mixture, pose, margin, crowded, one_view, occupancy, group, sites, width, held_out, rounds, escaped,
-         twins, parts, structureless] = value;
+         twins, cut, far, structureless] = value;
   archive(mixture, pose, margin, crowded, one_view, occupancy, group, sites, width, held_out, rounds, escaped,
-          twins, parts, structureless);
+          twins, cut, far, structureless);
 }
 template <class Archive>
 void fields(Archive& archive, RoundsUnderWay& value) {

@@ -71,9 +71,18 @@ double mean_per_localisation(const std::vector<double>& mean_of_view, const std:
 }
 
 double held_out_score(const Problem& problem, const Mixture& mixture, const std::vector<Pose>& pose,
-                      const NoiseModel& noise) {
-  const FusionData data(problem.views, problem.axes, noise, problem.held_out, problem.all);
+                      const NoiseModel& noise, bool cut) {
+  FusionData data(problem.views, problem.axes, noise, problem.held_out, problem.all);
+  if (cut) data.set_cut(problem.reach);
   return mean_per_localisation(mean_log_likelihood(mixture, data, pose), problem.all, problem.held_out);
+}
+
+double mean_gain_of_cuts(const Problem& problem, const Mixture& mixture, const std::vector<Pose>& pose) {
+  const CutTable cuts(mixture);
+  double total = 0;
+  for (std::size_t i = 0; i < pose.size(); ++i)
+    total += static_cast<double>(CutTable::gain(cuts.visible(problem.reach[i], pose[i]), 1));
+  return total / static_cast<double>(std::max<std::size_t>(1, pose.size()));
 }
 
 }  // namespace polar

@@ -33,9 +33,13 @@ Mixture scattered_mixture(const Problem& problem, const Subsets& subsets, const 
 double held_out_score(const Problem& problem, const Subsets& held_out, const std::vector<int>& which,
                       const Mixture& mixture, const std::vector<Pose>& pose, double width);
 
-/// Mean over localisations of the log density of `held_out` under a noise model, all views.
+/// Mean over localisations of the log density of `held_out` under a noise model, all views. `cut`: by
+/// planes.
 double held_out_score(const Problem& problem, const Mixture& mixture, const std::vector<Pose>& pose,
-                      const NoiseModel& noise);
+                      const NoiseModel& noise, bool cut);
+
+/// Mean over views of what a localisation gains where its view is taken as cut (polar/fusion/cuts.hpp).
+double mean_gain_of_cuts(const Problem& problem, const Mixture& mixture, const std::vector<Pose>& pose);
 
 /// From means per view, those of `which`, to the mean over the localisations `judged`.
 double mean_per_localisation(const std::vector<double>& mean_of_view, const std::vector<int>& which,

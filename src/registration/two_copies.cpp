@@ -91,9 +91,29 @@ std::vector<Pose> as_pairs_say(const Problem& problem, const std::vector<int>& w
   return better;
 }
 
+// The larger of two groups of parts that agree among themselves better than with each other, as they are
+// posed.
+std::vector<int> parts_of_one_copy(const Problem& problem, const RoundState& state) {
+  const std::vector<int> which = some_views(problem, kAsked);
+  const PairSearch pairs(problem.views, problem.axes, problem.fitted, which);
+  const Pose as_it_is;
+  Eigen::MatrixXd fit = agreement_of_pairs(pairs, poses_of(state, which), as_it_is).fit;
+  const auto n = static_cast<double>(fit.rows());
+  fit.diagonal().setConstant(fit.sum() / std::max(1.0, n * (n - 1)));
+  const Eigen::VectorXd of_view = fit.rowwise().mean();
+  fit = (fit.colwise() - of_view).rowwise() - of_view.transpose();
+  fit.array() += of_view.mean();
+  const Eigen::VectorXd group = two_groups(fit);
+  std::vector<int> out;
+  for (std::size_t k = 0; k < which.size(); ++k)
+    if (group[static_cast<Eigen::Index>(k)] > 0) out.push_back(which[k]);
+  return out;
+}
+
 }  // namespace
 
 std::vector<int> views_of_one_copy(const Problem& problem, const RoundState& state) {
+  if (state.cut) return parts_of_one_copy(problem, state);
   NoiseModel noise;
   noise.planar = problem.planar();
   noise.width = state.width;

@@ -8,6 +8,7 @@
 
 #include "polar/core/pose.hpp"
 #include "polar/core/view.hpp"
+#include "polar/fusion/cuts.hpp"
 #include "polar/fusion/effective.hpp"
 #include "polar/fusion/mixture.hpp"
 
@@ -34,6 +35,11 @@ class FusionData {
   void set_visibility(std::size_t view, std::vector<float> factor);
   void set_visibility(std::vector<std::vector<float>> factor_of_view);
   const std::vector<float>& visibility(std::size_t view) const;
+
+  /// The views are cut (cuts.hpp): `reach` of every view, of which those of the constructor's `which` count.
+  /// It outlives the object.
+  void set_cut(const std::vector<ViewReach>& reach, const std::vector<int>& which = {});
+  bool cut() const;
 
   struct Impl;
   const Impl& impl() const { return *impl_; }

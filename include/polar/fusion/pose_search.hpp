@@ -7,14 +7,16 @@
 
 #include "polar/core/pose.hpp"
 #include "polar/flames/search_grid.hpp"
+#include "polar/fusion/cuts.hpp"
 #include "polar/fusion/direction_volumes.hpp"
 
 namespace polar {
 
 struct SearchOptions {
   std::vector<Eigen::Vector3f> translation = {Eigen::Vector3f::Zero()};  // tried with every rotation
-  int promising = 400;  // best rotations whose translation is then improved
-  float step = 0;       // of that improvement, halved once; 0: none
+  int promising = 400;             // best rotations whose translation is then improved
+  float step = 0;                  // of that improvement, halved once; 0: none
+  const CutTable* cuts = nullptr;  // of the template, where views are cut
 };
 
 /// For every rotation of the grid, turned by `turn` first: the best score and its translation.
@@ -26,7 +28,7 @@ struct GridScores {
 /// others score minus infinity.
 GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, const SearchGrid& grid,
                       const Eigen::Matrix3f& turn, const SearchOptions& options,
-                      const SearchView* closer = nullptr);
+                      const SearchView* closer = nullptr, const ViewReach* reach = nullptr);
 
 struct Basin {
   Pose template_from_view;

@@ -28,6 +28,7 @@ struct SearchAgainOptions {
   double escape_gain = 2;  // log likelihood that a move must gain to count: less is a symmetric twin or a tie
   RotationGroup group;     // of the template: poses that differ by an element are one
   SearchOptions grid;
+  const std::vector<ViewReach>* reach = nullptr;  // of every view, where they are cut
 };
 
 struct SearchAgainReport {
