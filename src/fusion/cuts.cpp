@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "extent.hpp"
 #include "polar/core/spiral.hpp"
 
 namespace polar {
@@ -17,23 +18,23 @@ constexpr int kOffsets = 160;
 constexpr float kMost = 2.5f;       // particle radii: offsets of planes
 constexpr std::size_t kPlanes = 6;  // that are followed from one translation to the others
 
-std::array<Eigen::Vector3f, kViewDirections> spread_directions() {
-  std::array<Eigen::Vector3f, kViewDirections> out;
-  for (int i = 0; i < kViewDirections; ++i)
-    out[static_cast<std::size_t>(i)] = spiral_direction<float>(i, kViewDirections, Spiral::sphere);
-  return out;
+const std::vector<Eigen::Vector3f>& directions() {
+  static const std::vector<Eigen::Vector3f> all = spiral_directions<float>(kViewDirections, Spiral::sphere);
+  return all;
 }
-const std::array<Eigen::Vector3f, kViewDirections> kDirection = spread_directions();
 
-// The sphere unfolded onto a square: the octahedron |x| + |y| + |z| = 1, its lower half folded outwards.
+// The sphere unfolded onto a square: the octahedron |x| + |y| + |z| = 1, its lower half folded outwards, and
+// by the same fold back.
+void fold(float& x, float& y) {
+  const float folded = (1 - std::abs(y)) * std::copysign(1.0f, x);
+  y = (1 - std::abs(x)) * std::copysign(1.0f, y);
+  x = folded;
+}
+
 int cell_of(const Eigen::Vector3f& u) {
   const float norm = std::abs(u.x()) + std::abs(u.y()) + std::abs(u.z());
   float x = u.x() / norm, y = u.y() / norm;
-  if (u.z() < 0) {
-    const float folded = (1 - std::abs(y)) * std::copysign(1.0f, x);
-    y = (1 - std::abs(x)) * std::copysign(1.0f, y);
-    x = folded;
-  }
+  if (u.z() < 0) fold(x, y);
   const auto index = [](float a) {
     return std::min(kSide - 1, static_cast<int>((a + 1) * (0.5f * static_cast<float>(kSide))));
   };
@@ -46,11 +47,7 @@ Eigen::Vector3f centre_of(int cell) {
   };
   float x = coordinate(cell % kSide), y = coordinate(cell / kSide);
   const float z = 1 - std::abs(x) - std::abs(y);
-  if (z < 0) {
-    const float folded = (1 - std::abs(y)) * std::copysign(1.0f, x);
-    y = (1 - std::abs(x)) * std::copysign(1.0f, y);
-    x = folded;
-  }
+  if (z < 0) fold(x, y);
   return Eigen::Vector3f(x, y, z).normalized();
 }
 
@@ -65,13 +62,11 @@ int offset_of(float s) {
 ViewReach reach_of(const Eigen::Matrix3Xf& points) {
   ViewReach out;
   if (points.cols() == 0) return out;
-  std::vector<float> along(static_cast<std::size_t>(points.cols()));
-  const auto at = static_cast<std::ptrdiff_t>(kCounted * static_cast<double>(along.size() - 1));
   out.farthest.reserve(kViewDirections);
-  for (const Eigen::Vector3f& d : kDirection) {
-    Eigen::Map<Eigen::RowVectorXf>(along.data(), points.cols()) = d.transpose() * points;
-    std::nth_element(along.begin(), along.begin() + at, along.end());
-    out.farthest.push_back(along[static_cast<std::size_t>(at)]);
+  Extent extent(points);
+  for (const Eigen::Vector3f& d : directions()) {
+    extent.project(d);
+    out.farthest.push_back(extent.quantile(kCounted));
   }
   return out;
 }
@@ -91,6 +86,10 @@ CutTable::CutTable(const Mixture& mixture) : beyond_(static_cast<std::size_t>(kS
   }
 }
 
+const float* CutTable::row_of(const Eigen::Vector3f& direction) const {
+  return &beyond_[static_cast<std::size_t>(cell_of(direction) * kOffsets)];
+}
+
 void CutTable::visible(const ViewReach& reach, const Eigen::Matrix3f& rotation,
                        const std::vector<Eigen::Vector3f>& translation, float* share) const {
   if (reach.farthest.empty()) {
@@ -107,8 +106,8 @@ void CutTable::visible(const ViewReach& reach, const Eigen::Matrix3f& rotation,
   std::array<Plane, kPlanes> most;
   for (Plane& p : most) p = {-1, Eigen::Vector3f::Zero(), 0, beyond_.data()};
   for (std::size_t d = 0; d < reach.farthest.size(); ++d) {
-    const Eigen::Vector3f u = rotation * kDirection[d];
-    const float* row = &beyond_[static_cast<std::size_t>(cell_of(u) * kOffsets)];
+    const Eigen::Vector3f u = rotation * directions()[d];
+    const float* row = row_of(u);
     const float beyond = row[offset_of(reach.farthest[d] + u.dot(translation[translation.size() / 2]))];
     if (beyond <= most.back().beyond) continue;
     std::size_t k = kPlanes - 1;
@@ -123,22 +122,15 @@ void CutTable::visible(const ViewReach& reach, const Eigen::Matrix3f& rotation,
   }
 }
 
-float CutTable::visible(const ViewReach& reach, const Pose& template_from_view) const {
-  float share = 1;
-  visible(reach, template_from_view.rotation.cast<float>(), {template_from_view.translation.cast<float>()},
-          &share);
-  return share;
-}
-
 Cut CutTable::likeliest(const ViewReach& reach, const Pose& template_from_view) const {
   Cut out;
   const Eigen::Matrix3f rotation = template_from_view.rotation.cast<float>();
   const Eigen::Vector3f translation = template_from_view.translation.cast<float>();
   for (std::size_t d = 0; d < reach.farthest.size(); ++d) {
-    const Eigen::Vector3f u = rotation * kDirection[d];
+    const Eigen::Vector3f u = rotation * directions()[d];
     const float offset = reach.farthest[d] + u.dot(translation);
-    const float visible = 1 - beyond_[static_cast<std::size_t>(cell_of(u) * kOffsets + offset_of(offset))];
-    if (visible < out.visible || d == 0) out = {kDirection[d], reach.farthest[d], visible};
+    const float visible = 1 - row_of(u)[offset_of(offset)];
+    if (visible < out.visible || d == 0) out = {directions()[d], reach.farthest[d], visible};
   }
   return out;
 }

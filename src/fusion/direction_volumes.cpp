@@ -107,8 +107,7 @@ int directions_for(const SigmaClasses& classes, bool planar) {
 
 DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions,
                                    bool planar, const BackgroundFactor& background_factor) {
-  for (int i = 0; i < directions; ++i)  // e and -e blur alike
-    direction_.push_back(spiral_direction<float>(i, directions, Spiral::hemisphere));
+  direction_ = spiral_directions<float>(directions, Spiral::hemisphere);  // e and -e blur alike
   float sharpest = INFINITY;
   for (const AxialSigma& s : classes.sigma)
     sharpest = std::min({sharpest, s.lateral, planar ? s.lateral : s.axial});

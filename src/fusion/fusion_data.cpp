@@ -1,6 +1,5 @@
 #include "polar/fusion/fusion_data.hpp"
 
-#include <algorithm>
 #include <optional>
 
 #include "fusion_data_impl.hpp"
@@ -11,7 +10,16 @@ namespace polar {
 
 namespace {
 constexpr std::size_t kBlock = 4;  // views a task
+
+// The template's cuts, where the views are.
+std::optional<CutTable> cuts_of(const Mixture& mixture, const FusionData& data) {
+  return data.cut() ? std::optional<CutTable>(std::in_place, mixture) : std::nullopt;
 }
+
+CutView cut_view(const std::optional<CutTable>& cuts, const FusionData& data, std::size_t view) {
+  return cuts ? CutView{&*cuts, data.impl().reach[view]} : CutView{};
+}
+}  // namespace
 
 FusionData::FusionData(const Views& views, const std::vector<Eigen::Vector3f>& axes, const NoiseModel& noise,
                        const Subsets& subsets, const std::vector<int>& which)
@@ -53,21 +61,6 @@ void FusionData::set_cut(const std::vector<ViewReach>& reach, const std::vector<
 
 bool FusionData::cut() const { return !impl_->reach.empty(); }
 
-void weigh_by_exposure(const FusionData& data, const std::vector<Pose>& pose, Mixture& mixture) {
-  const CutTable cuts(mixture);
-  Eigen::RowVectorXf exposure = Eigen::RowVectorXf::Zero(mixture.size());
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const Cut cut = cuts.likeliest(*data.impl().reach[i], pose[i]);
-    const Eigen::Vector3f normal = (pose[i].rotation * cut.normal.cast<double>()).cast<float>();
-    const float offset = cut.offset + normal.dot(pose[i].translation.cast<float>());
-    exposure.array() += ((normal.transpose() * mixture.centre).array() <= offset).cast<float>() /
-                        std::max(cut.visible, kLeastShown);
-  }
-  const float least = 0.1f * exposure.maxCoeff();
-  mixture.weight.array() /= exposure.transpose().array().max(least);
-  mixture.weight /= mixture.weight.sum();
-}
-
 const float* view_weight(const FusionData& data, std::size_t view, const float* weight,
                          std::vector<float>& buffer) {
   const std::vector<float>& factor = data.visibility(view);
@@ -80,8 +73,7 @@ const float* view_weight(const FusionData& data, std::size_t view, const float* 
 std::vector<double> mean_log_likelihood(const Mixture& mixture, const FusionData& data,
                                         const std::vector<Pose>& template_from_view) {
   const BlockedMixture blocked(mixture);
-  std::optional<CutTable> cuts;
-  if (data.cut()) cuts.emplace(mixture);
+  const std::optional<CutTable> cuts = cuts_of(mixture, data);
   std::vector<double> mean(data.size(), 0.0);
   parallel_blocks(data.size(), kBlock, [&](std::size_t begin, std::size_t end, std::size_t) {
     ViewFrame frame(blocked);
@@ -92,9 +84,8 @@ std::vector<double> mean_log_likelihood(const Mixture& mixture, const FusionData
       mean[i] = log_likelihood(frame, view, template_from_view[i].inverse(), blocked.background(),
                                view_weight(data, i, blocked.weight(), buffer)) /
                 static_cast<double>(view.size());
-      if (cuts)
-        mean[i] += static_cast<double>(
-            CutTable::gain(cuts->visible(*data.impl().reach[i], template_from_view[i]), 1));
+      if (const auto cut = cut_view(cuts, data, i).likeliest(template_from_view[i]))
+        mean[i] += static_cast<double>(CutTable::gain(cut->visible, 1));
     }
   });
   return mean;
@@ -103,20 +94,17 @@ std::vector<double> mean_log_likelihood(const Mixture& mixture, const FusionData
 double refine_poses(const Mixture& mixture, const FusionData& data, std::vector<Pose>& template_from_view,
                     int evaluations) {
   const BlockedMixture blocked(mixture);
-  std::optional<CutTable> cuts;
-  if (data.cut()) cuts.emplace(mixture);
+  const std::optional<CutTable> cuts = cuts_of(mixture, data);
   return ordered_sum(data.size(), kBlock, 0.0, [&](std::size_t begin, std::size_t end) {
     ViewFrame frame(blocked);
     std::vector<float> buffer;
     double total = 0;
     for (std::size_t i = begin; i < end; ++i) {
       if (data.impl().view[i].empty()) continue;
-      ViewCut cut;
-      if (cuts)
-        cut = likeliest_cut(*cuts, *data.impl().reach[i], template_from_view[i], data.impl().view[i].size());
-      const RefinedPose refined = refine_pose(
-          frame, data.impl().view[i], template_from_view[i].inverse(), blocked.background(), data.planar(),
-          evaluations, view_weight(data, i, blocked.weight(), buffer), cuts ? &cut : nullptr);
+      const RefinedPose refined =
+          refine_pose(frame, data.impl().view[i], template_from_view[i].inverse(), blocked.background(),
+                      data.planar(), evaluations, view_weight(data, i, blocked.weight(), buffer),
+                      cut_view(cuts, data, i).likeliest(template_from_view[i]));
       template_from_view[i] = refined.view_from_template.inverse();
       total += refined.log_likelihood;
     }

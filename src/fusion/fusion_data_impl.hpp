@@ -13,9 +13,6 @@ struct FusionData::Impl {
   std::vector<const ViewReach*> reach;  // where views are cut
 };
 
-/// Weighs every centre by how seldom views could show it.
-void weigh_by_exposure(const FusionData& data, const std::vector<Pose>& template_from_view, Mixture& mixture);
-
 /// Weights of a view's centres with its visibility, or null when it has none; `buffer` holds them.
 const float* view_weight(const FusionData& data, std::size_t view, const float* weight,
                          std::vector<float>& buffer);

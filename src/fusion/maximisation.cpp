@@ -111,6 +111,22 @@ void average_over(const std::vector<std::vector<Eigen::Index>>& orbits, const Ro
   }
 }
 
+// Weighs every centre by how seldom views could show it.
+void weigh_by_exposure(const FusionData& data, const std::vector<Pose>& pose, Mixture& mixture) {
+  const CutTable cuts(mixture);
+  Eigen::RowVectorXf exposure = Eigen::RowVectorXf::Zero(mixture.size());
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const Cut cut = cuts.likeliest(*data.impl().reach[i], pose[i]);
+    const Eigen::Vector3f normal = (pose[i].rotation * cut.normal.cast<double>()).cast<float>();
+    const float offset = cut.offset + normal.dot(pose[i].translation.cast<float>());
+    exposure.array() += ((normal.transpose() * mixture.centre).array() <= offset).cast<float>() /
+                        std::max(cut.visible, kLeastShown);
+  }
+  const float least = 0.1f * exposure.maxCoeff();
+  mixture.weight.array() /= exposure.transpose().array().max(least);
+  mixture.weight /= mixture.weight.sum();
+}
+
 // Sows the weakest centres anew beside strong ones, each strong one used once a step.
 void sow_again(Mixture& mixture, const std::vector<double>& strength, const MaximisationOptions& options) {
   const std::size_t n = strength.size();

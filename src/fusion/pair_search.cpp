@@ -122,9 +122,7 @@ PairSearch::PairSearch(const Views& views, const std::vector<Eigen::Vector3f>& a
     const View& view = views.view[i];
     if (subset[i].empty()) return;
     Partial& part = impl_->part[k];
-    Eigen::Matrix3Xf points(3, static_cast<Eigen::Index>(subset[i].size()));
-    for (Eigen::Index j = 0; j < points.cols(); ++j)
-      points.col(j) = view.points.col(subset[i][static_cast<std::size_t>(j)]);
+    const Eigen::Matrix3Xf points = view.points(Eigen::all, subset[i]);
     part.mixture = mixture_of(points);
     part.blocked = std::make_unique<BlockedMixture>(part.mixture);
     part.seen = SeenRegion(points);

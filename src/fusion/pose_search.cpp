@@ -13,23 +13,21 @@ namespace {
 // Scores of a view at translations, with what its cut gains.
 class Scorer {
  public:
-  Scorer(const DirectionVolumes& volumes, const CutTable* cuts, const ViewReach* reach)
-      : volumes_(volumes), cuts_(reach != nullptr ? cuts : nullptr), reach_(reach) {}
+  Scorer(const DirectionVolumes& volumes, const CutView& cut) : volumes_(volumes), cut_(cut) {}
 
   void operator()(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
                   const std::vector<Eigen::Vector3f>& translation, float* score) {
     volumes_.scores(view, direction, rotation, translation, score);
-    if (cuts_ == nullptr) return;
+    if (cut_.cuts == nullptr) return;
     share_.resize(translation.size());
-    cuts_->visible(*reach_, rotation, translation, share_.data());
+    cut_.cuts->visible(*cut_.reach, rotation, translation, share_.data());
     for (std::size_t t = 0; t < share_.size(); ++t)
       score[t] += CutTable::gain(share_[t], static_cast<std::size_t>(view.count));
   }
 
  private:
   const DirectionVolumes& volumes_;
-  const CutTable* cuts_;
-  const ViewReach* reach_;
+  CutView cut_;
   std::vector<float> share_;
 };
 
@@ -81,8 +79,8 @@ std::vector<Eigen::Vector3f> lattice_shifts(double reach, double spacing, bool p
 
 GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, const SearchGrid& grid,
                       const Eigen::Matrix3f& turn, const SearchOptions& options, const SearchView* closer,
-                      const ViewReach* reach) {
-  Scorer scorer(volumes, options.cuts, reach);
+                      const CutView& cut) {
+  Scorer scorer(volumes, cut);
   const std::size_t n = grid.rotation.size();
   GridScores out;
   out.log_likelihood.resize(n);

@@ -91,9 +91,8 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
   const SigmaClasses classes = sigma_classes(views, axes, noise, options.sigma_classes);
   const DirectionVolumes volumes(mixture, classes, directions_for(classes, noise.planar), noise.planar);
   const BlockedMixture blocked(mixture);
-  SearchOptions on_grid = options.grid;
   std::optional<CutTable> cuts;
-  if (options.reach != nullptr) on_grid.cuts = &cuts.emplace(mixture);
+  if (options.reach != nullptr) cuts.emplace(mixture);
   std::vector<Outcome> outcome(views.view.size());
   parallel_for(views.view.size(), [&](std::size_t i) {
     const std::vector<std::uint32_t> few = first_of(subset[i], options.most_localisations);
@@ -103,20 +102,18 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
       return search_view(views.view[i], axes[i], noise, classes, which);
     };
     const SearchView all = seen(few);
-    const ViewReach* reach = options.reach != nullptr ? &(*options.reach)[i] : nullptr;
+    const CutView cut = cuts ? CutView{&*cuts, &(*options.reach)[i]} : CutView{};
     ViewFrame frame(blocked);
     const auto uphill = [&](const KernelLocalisations& of, const Pose& start, int evaluations) {
-      ViewCut cut;
-      if (reach != nullptr) cut = likeliest_cut(*cuts, *reach, start.inverse(), of.size());
       return refine_pose(frame, of, start, blocked.background(), noise.planar, evaluations, nullptr,
-                         reach != nullptr ? &cut : nullptr);
+                         cut.likeliest(start.inverse()));
     };
     const auto coarse = static_cast<std::size_t>(options.coarse_localisations);
     const bool in_two_steps = coarse > 0 && coarse < few.size();
     const GridScores scores =
         in_two_steps ? score_grid(volumes, seen({few.begin(), few.begin() + options.coarse_localisations}),
-                                  grid, turn, on_grid, &all, reach)
-                     : score_grid(volumes, all, grid, turn, on_grid, nullptr, reach);
+                                  grid, turn, options.grid, &all, cut)
+                     : score_grid(volumes, all, grid, turn, options.grid, nullptr, cut);
     const KernelLocalisations localisations = kernel_localisations(views.view[i], axes[i], noise, few);
     const auto refined = [&](const Pose& start) {
       return uphill(localisations, start.inverse(), options.evaluations);

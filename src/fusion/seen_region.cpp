@@ -1,7 +1,6 @@
 #include "polar/fusion/seen_region.hpp"
 
-#include <algorithm>
-
+#include "extent.hpp"
 #include "polar/core/spiral.hpp"
 
 namespace polar {
@@ -11,31 +10,18 @@ constexpr int kDirections = 96;
 constexpr double kCounted = 0.985;  // share of the points along a direction
 constexpr float kMargin = 0.01f;    // of the extent along the direction: the noise of an edge
 
-std::vector<Eigen::Vector3f> spread_directions() {
-  std::vector<Eigen::Vector3f> out;
-  out.reserve(kDirections);
-  for (int i = 0; i < kDirections; ++i)
-    out.push_back(spiral_direction<float>(i, kDirections, Spiral::sphere));
-  return out;
-}
-
 const std::vector<Eigen::Vector3f>& directions() {
-  static const std::vector<Eigen::Vector3f> all = spread_directions();
+  static const std::vector<Eigen::Vector3f> all = spiral_directions<float>(kDirections, Spiral::sphere);
   return all;
 }
 }  // namespace
 
 SeenRegion::SeenRegion(const Eigen::Matrix3Xf& points) {
   if (points.cols() == 0) return;
-  std::vector<float> along(static_cast<std::size_t>(points.cols()));
-  const auto quantile = [&](double share) {
-    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(along.size() - 1));
-    std::nth_element(along.begin(), along.begin() + at, along.end());
-    return along[static_cast<std::size_t>(at)];
-  };
+  Extent extent(points);
   for (const Eigen::Vector3f& d : directions()) {
-    Eigen::Map<Eigen::RowVectorXf>(along.data(), points.cols()) = d.transpose() * points;
-    const float near = quantile(1 - kCounted), far = quantile(kCounted);
+    extent.project(d);
+    const float near = extent.quantile(1 - kCounted), far = extent.quantile(kCounted);
     farthest_.push_back(far - kMargin * (far - near));
   }
 }

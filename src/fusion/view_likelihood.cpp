@@ -97,13 +97,10 @@ PoseDerivatives pose_derivatives(ViewFrame& frame, const KernelLocalisations& vi
   return d;
 }
 
-ViewCut likeliest_cut(const CutTable& cuts, const ViewReach& reach, const Pose& template_from_view,
-                      std::size_t localisations) {
-  const Cut cut = cuts.likeliest(reach, template_from_view);
-  return {cut.normal.cast<double>(), cut.offset, static_cast<double>(localisations)};
-}
-
-void add_cut(ViewFrame& frame, const Pose& pose, const ViewCut& cut, PoseDerivatives& d) {
+void add_cut(ViewFrame& frame, const Pose& pose, const Cut& cut, std::size_t localisations,
+             PoseDerivatives& d) {
+  const Eigen::Vector3d normal = cut.normal.cast<double>();
+  const double offset = cut.offset, worth = static_cast<double>(localisations);
   const kernel::Centres& c = frame.at(pose);
   const int n = c.blocks * kernel::kBlock;
   double all = 0, shown = 0;
@@ -111,18 +108,18 @@ void add_cut(ViewFrame& frame, const Pose& pose, const ViewCut& cut, PoseDerivat
   for (int k = 0; k < n; ++k) {
     if (c.weight[k] == 0) continue;
     const Eigen::Vector3d y(c.x[k], c.y[k], c.z[k]);
-    const double w = c.weight[k], inside = 1 / (1 + std::exp((cut.normal.dot(y) - cut.offset) / kEdge));
+    const double w = c.weight[k], inside = 1 / (1 + std::exp((normal.dot(y) - offset) / kEdge));
     all += w, shown += w * inside;
     const double there = w * inside * (1 - inside) / kEdge;
-    slope.head<3>() -= there * y.cross(cut.normal);
-    slope.tail<3>() -= there * cut.normal;
+    slope.head<3>() -= there * y.cross(normal);
+    slope.tail<3>() -= there * normal;
   }
   const double share = shown / all;
-  d.log_likelihood -= cut.worth * std::log(std::max(share, static_cast<double>(kLeastShown)));
+  d.log_likelihood -= worth * std::log(std::max(share, static_cast<double>(kLeastShown)));
   if (share < static_cast<double>(kLeastShown)) return;
   slope /= shown;
-  d.gradient -= cut.worth * slope;
-  d.fisher += cut.worth * slope * slope.transpose();
+  d.gradient -= worth * slope;
+  d.fisher += worth * slope * slope.transpose();
 }
 
 Pose perturbed(const Pose& pose, const Vector6& step) {
@@ -131,10 +128,10 @@ Pose perturbed(const Pose& pose, const Vector6& step) {
 
 RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const Pose& start,
                         float background, bool planar, int max_evaluations, const float* weight,
-                        const ViewCut* cut) {
+                        const std::optional<Cut>& cut) {
   const auto derivatives = [&](const Pose& pose) {
     PoseDerivatives d = pose_derivatives(frame, view, pose, background, weight);
-    if (cut != nullptr) add_cut(frame, pose, *cut, d);
+    if (cut) add_cut(frame, pose, *cut, view.size(), d);
     return d;
   };
   RefinedPose best{start, 0, 1};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "blocked_mixture.hpp"
 #include "localisations.hpp"
@@ -32,18 +33,10 @@ PoseDerivatives pose_derivatives(ViewFrame& frame, const KernelLocalisations& vi
                                  const Pose& view_from_template, float background,
                                  const float* weight = nullptr);
 
-/// A plane that cuts the view: what lies beyond normal . x = offset (frame of the view) it does not show. The
-/// log likelihood gains -worth ln(share of the centres' weight on this side).
-struct ViewCut {
-  Eigen::Vector3d normal;
-  double offset = 0;
-  double worth = 0;
-};
-/// The likeliest at a pose.
-ViewCut likeliest_cut(const CutTable& cuts, const ViewReach& reach, const Pose& template_from_view,
-                      std::size_t localisations);
-/// Adds the gain and its derivatives.
-void add_cut(ViewFrame& frame, const Pose& view_from_template, const ViewCut& cut, PoseDerivatives& d);
+/// Adds what `localisations` gain by a cut, -ln of the share of the centres' weight that it leaves, and the
+/// derivatives.
+void add_cut(ViewFrame& frame, const Pose& view_from_template, const Cut& cut, std::size_t localisations,
+             PoseDerivatives& d);
 
 struct RefinedPose {
   Pose view_from_template;
@@ -54,7 +47,7 @@ struct RefinedPose {
 /// Levenberg-Marquardt on the pose, template fixed; never returns a worse pose than it was given.
 RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const Pose& start,
                         float background, bool planar, int max_evaluations, const float* weight = nullptr,
-                        const ViewCut* cut = nullptr);
+                        const std::optional<Cut>& cut = {});
 
 /// exp(step) applied after view_from_template.
 Pose perturbed(const Pose& view_from_template, const Vector6& step);

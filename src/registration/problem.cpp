@@ -24,13 +24,6 @@ bool is_finite(const View& view) {
     finite = finite && std::all_of(c.begin(), c.end(), [](float v) { return std::isfinite(v); });
   return finite;
 }
-
-Eigen::Matrix3Xf first_points(const View& view, const std::vector<std::uint32_t>& order) {
-  Eigen::Matrix3Xf out(3, static_cast<Eigen::Index>(std::min(order.size(), kReachLocalisations)));
-  for (Eigen::Index j = 0; j < out.cols(); ++j)
-    out.col(j) = view.points.col(order[static_cast<std::size_t>(j)]);
-  return out;
-}
 }  // namespace
 
 Problems make_problems(const Views& views, std::uint64_t seed) {
@@ -47,7 +40,11 @@ Problems make_problems(const Views& views, std::uint64_t seed) {
     thinned.shuffled[i] = sampling_order(weight, KeyedRandom(seed, i, kThinningStage));
     plain.shuffled[i] =
         sampling_order(std::vector<double>(weight.size(), 1.0), KeyedRandom(seed, i, kShuffleStage));
-    plain.reach[i] = reach_of(first_points(views.view[i], plain.shuffled[i]));
+    if (!views.planar) {
+      std::vector<std::uint32_t> few = plain.shuffled[i];
+      few.resize(std::min(few.size(), kReachLocalisations));
+      plain.reach[i] = reach_of(views.view[i].points(Eigen::all, few));
+    }
     std::vector<std::uint32_t> even = thinned.shuffled[i];
     even.resize(std::min(even.size(), static_cast<std::size_t>(
                                           std::ceil(std::accumulate(weight.begin(), weight.end(), 0.0)))));

@@ -17,7 +17,7 @@ struct Problem {
   Subsets shuffled;  // all localisations of each view in a keyed random order: any prefix is a sample
   Subsets fitted;    // the share the template is fitted to while anything is still chosen by likelihood
   Subsets held_out;  // the rest: judges starts, calibration and the number of centres
-  std::vector<ViewReach> reach;  // of every view
+  std::vector<ViewReach> reach;  // of every view; not in the plane
   std::vector<int> all;
   std::uint64_t seed = 1;
   double localisations = 0;

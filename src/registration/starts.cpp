@@ -52,16 +52,19 @@ class Competition {
 
   bool run() {
     if (!run_until_two_agree()) return false;
-    if (out_.agreement > 0) return without_strands() && ask_pairs_of_cut() && side_turned() && turned_back();
-    if (!run_until(runs_.all()) || !register_best(finalists(), false) ||
-        !register_best(kOneViewFinalists, true))
-      return false;
-    judge();
+    if (!agreed()) {
+      if (!run_until(runs_.all()) || !register_best(finalists(), false) ||
+          !register_best(kOneViewFinalists, true))
+        return false;
+      judge();
+    }
     return without_strands() && ask_pairs() && undouble() && side_turned() && turned_back();
   }
   StartsOutcome outcome() { return std::move(out_); }
 
  private:
+  bool agreed() const { return out_.agreement > 0; }
+
   // Short runs of the first so many starts, ranked: those of one view, which end sharper, among themselves.
   bool run_until(int count) {
     runs_.run_until(count, progress_, checkpoint_, best_first_);
@@ -172,24 +175,19 @@ class Competition {
            mean_gain_of_cuts(problems_.plain, winner.mixture, winner.pose) > kLooksCut;
   }
 
-  // Two starts may agree on cut views that are laid over each other, because it is the same ones that look
-  // so.
-  bool ask_pairs_of_cut() {
-    if (!looks_cut()) return true;
-    return ask_pairs() && (!out_.winner.cut || undouble());
-  }
-
   // Pairs of views have the last word: where they contradict the winner, or there is none, what they say is
-  // registered too. Both are then judged as parts.
+  // registered too. Both are then judged as parts. Where two starts agree only cut views are asked: those
+  // that are laid over each other are the same in both, because it is them that look so.
   bool ask_pairs() {
     if (!wants(options_, "assembled")) return true;
     const bool cut = looks_cut();
+    if (agreed() && !cut) return true;
     const Problem& problem = problems_.of(!cut);
     PartOfCheckpoint here(checkpoint_, "finalist assembled");
     RoundState state;
     if (!restore(here, "pairs", state)) {
       const Assembly assembly(problem);
-      const bool doubtful = !out_.finished || (cut && out_.agreement == 0);
+      const bool doubtful = !out_.finished || (cut && !agreed());
       if (!doubtful && !assembly.contradicts(out_.winner.pose)) return true;
       state = assembly.assembled(rounds_, cut, progress_);
       if (progress_.cancelled()) return false;
@@ -203,9 +201,10 @@ class Competition {
     return true;
   }
 
-  // Where the winner holds the structure twice, it is registered again from one copy.
+  // Where the winner holds the structure twice, it is registered again from one copy; starts do not agree on
+  // two copies but of cut views.
   bool undouble() {
-    if (!out_.finished) return true;
+    if (!out_.finished || (agreed() && !out_.winner.cut)) return true;
     return once_more_from(views_of_one_copy(problems_.of(out_.winner.crowded), out_.winner), "one copy",
                           out_.winner);
   }

@@ -81,7 +81,7 @@ double mean_gain_of_cuts(const Problem& problem, const Mixture& mixture, const s
   const CutTable cuts(mixture);
   double total = 0;
   for (std::size_t i = 0; i < pose.size(); ++i)
-    total += static_cast<double>(CutTable::gain(cuts.visible(problem.reach[i], pose[i]), 1));
+    total += static_cast<double>(CutTable::gain(cuts.likeliest(problem.reach[i], pose[i]).visible, 1));
   return total / static_cast<double>(std::max<std::size_t>(1, pose.size()));
 }
 

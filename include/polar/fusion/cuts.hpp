@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "polar/core/pose.hpp"
@@ -40,15 +41,26 @@ class CutTable {
   /// which none of its localisations lies: for the rotation of template_from_view and each translation.
   void visible(const ViewReach& reach, const Eigen::Matrix3f& rotation,
                const std::vector<Eigen::Vector3f>& translation, float* share) const;
-  float visible(const ViewReach& reach, const Pose& template_from_view) const;
-
+  /// That cut at one pose.
   Cut likeliest(const ViewReach& reach, const Pose& template_from_view) const;
 
   /// What `localisations` gain in log likelihood by the cut that leaves this share.
   static float gain(float share, std::size_t localisations);
 
  private:
+  const float* row_of(const Eigen::Vector3f& direction) const;
+
   std::vector<float> beyond_;  // directions x offsets
+};
+
+/// One view under a template, where views are cut; else it holds nothing.
+struct CutView {
+  const CutTable* cuts = nullptr;
+  const ViewReach* reach = nullptr;
+
+  std::optional<Cut> likeliest(const Pose& template_from_view) const {
+    return cuts != nullptr ? std::optional(cuts->likeliest(*reach, template_from_view)) : std::nullopt;
+  }
 };
 
 }  // namespace polar

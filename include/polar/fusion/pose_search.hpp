@@ -14,9 +14,8 @@ namespace polar {
 
 struct SearchOptions {
   std::vector<Eigen::Vector3f> translation = {Eigen::Vector3f::Zero()};  // tried with every rotation
-  int promising = 400;             // best rotations whose translation is then improved
-  float step = 0;                  // of that improvement, halved once; 0: none
-  const CutTable* cuts = nullptr;  // of the template, where views are cut
+  int promising = 400;  // best rotations whose translation is then improved
+  float step = 0;       // of that improvement, halved once; 0: none
 };
 
 /// For every rotation of the grid, turned by `turn` first: the best score and its translation.
@@ -28,7 +27,7 @@ struct GridScores {
 /// others score minus infinity.
 GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, const SearchGrid& grid,
                       const Eigen::Matrix3f& turn, const SearchOptions& options,
-                      const SearchView* closer = nullptr, const ViewReach* reach = nullptr);
+                      const SearchView* closer = nullptr, const CutView& cut = {});
 
 struct Basin {
   Pose template_from_view;

@@ -44,7 +44,7 @@ TEST(Cuts, theShareThatAPlaneLeavesIsFoundInAnyPose) {
     const double truth = static_cast<double>(view.cols()) / 2000;
     const Eigen::Matrix3f back = template_from_view.rotation.transpose().cast<float>();
     view = back * (view.colwise() - template_from_view.translation.cast<float>());
-    const double share = cuts.visible(reach_of(view), template_from_view);
+    const double share = cuts.likeliest(reach_of(view), template_from_view).visible;
     // The nearest of the directions is up to 10 degrees off the plane's normal. Across the ball's rim, along
     // it, a view then reaches sin(10 degrees) = 0.17 farther, over a slab of 0.75 x 0.17 of the mass or less.
     EXPECT_GT(share, truth - 0.04) << key;
@@ -57,7 +57,7 @@ TEST(Cuts, theShareThatAPlaneLeavesIsFoundInAnyPose) {
 
 TEST(Cuts, aWholeViewGainsNothing) {
   const CutTable cuts(template_of(ball(2000, 1)));
-  const float share = cuts.visible(reach_of(ball(1000, 2)), Pose{});
+  const float share = cuts.likeliest(reach_of(ball(1000, 2)), Pose{}).visible;
   EXPECT_GT(share, 0.95f);
   EXPECT_LT(CutTable::gain(share, 1000), 50.0f);
   EXPECT_NEAR(CutTable::gain(0.5f, 1000), 693.1f, 0.1f);
@@ -72,7 +72,8 @@ TEST(Cuts, manyTranslationsScoreAsEachOfThem) {
   std::vector<float> share(shifts.size());
   cuts.visible(reach, Eigen::Matrix3f::Identity(), shifts, share.data());
   for (std::size_t t = 0; t < shifts.size(); ++t)
-    EXPECT_NEAR(share[t], cuts.visible(reach, Pose{Eigen::Matrix3d::Identity(), shifts[t].cast<double>()}),
+    EXPECT_NEAR(share[t],
+                cuts.likeliest(reach, Pose{Eigen::Matrix3d::Identity(), shifts[t].cast<double>()}).visible,
                 0.02f)
         << t;
 }

@@ -89,19 +89,20 @@ TEST_P(ViewLikelihood, gradientMatchesCentralDifferences) {
   }
 }
 
-TEST(ViewCut, gradientMatchesCentralDifferences) {
+TEST(AddCut, gradientMatchesCentralDifferences) {
   Case c(false);
   ViewFrame frame(c.blocked);
   const Pose pose = c.truth.inverse();
-  const ViewCut cut{Eigen::Vector3d(0.5, -0.4, 0.7).normalized(), 0.1, 300};
+  const Cut cut{Eigen::Vector3f(0.5f, -0.4f, 0.7f).normalized(), 0.1f, 1};
+  constexpr double kLocalisations = 300;
   const auto at = [&](const Pose& p) {
     PoseDerivatives d;
-    add_cut(frame, p, cut, d);
+    add_cut(frame, p, cut, static_cast<std::size_t>(kLocalisations), d);
     return d;
   };
   const PoseDerivatives d = at(pose);
-  ASSERT_GT(d.log_likelihood, 0.05 * cut.worth) << "the plane cuts nothing";
-  ASSERT_LT(d.log_likelihood, -std::log(0.25) * cut.worth) << "the plane leaves nothing";
+  ASSERT_GT(d.log_likelihood, 0.05 * kLocalisations) << "the plane cuts nothing";
+  ASSERT_LT(d.log_likelihood, -std::log(0.25) * kLocalisations) << "the plane leaves nothing";
   constexpr double kStep = 1e-3;  // a centre's coordinates are single precision
   for (int i = 0; i < 6; ++i) {
     const auto value = [&](double s) { return at(perturbed(pose, s * Vector6::Unit(i))).log_likelihood; };
