@@ -120,7 +120,7 @@ std::string format(const char* pattern, double value) {
 
 std::string agreement_text(double agreement) {
   if (!(agreement > 0)) return "";
-  return format(", two random ones pose %.0f %% of the particles alike", 100 * agreement);
+  return format(", the best two pose %.0f %% of the particles alike", 100 * agreement);
 }
 
 // NaN has no place in JSON.
@@ -161,7 +161,8 @@ std::vector<std::string> describe(const Results& r, const std::vector<Stranger>&
                                   const std::string& directory, double seconds) {
   const Registration& g = r.registration;
   const std::size_t n = r.particles.particles.size();
-  std::vector<std::string> lines = {"particles    " + std::to_string(accepted_particles(r)) + " of " +
+  std::vector<std::string> lines = {"structure    " + to_string(g.verdict) + ": " + g.verdict_reason,
+                                    "particles    " + std::to_string(accepted_particles(r)) + " of " +
                                     std::to_string(n) + " accepted"};
   for (const auto& [count, reason] : rejections(r))
     lines.push_back("rejected     " + std::to_string(count) + ": " + reason);
@@ -180,6 +181,10 @@ std::vector<std::string> describe(const Results& r, const std::vector<Stranger>&
   lines.push_back("rounds       " + std::to_string(g.rounds) +
                   (g.converged ? ", converged: " : ", not converged: ") + g.stopped_because);
   if (g.symmetry) lines.push_back(pipeline::symmetry_line(*g.symmetry, r.normalisation.scale_nm));
+  if (g.other)
+    lines.push_back("other        the average " + (g.other->group == "C1" ? "without symmetry" : "with " + g.other->group) +
+                    format(" explains localisations kept apart by %+.4f", g.other->gain) +
+                    format(" +- %.4f nat", g.other->gain_std));
   if (r.resolution) lines.push_back(resolution_line(*r.resolution));
   lines.push_back("seconds      " + format("%.1f", seconds));
   lines.push_back("results      " + directory);
@@ -195,7 +200,8 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
   for (const StartReport& s : g.starts)
     starts.push_back({{"name", s.name},
                       {"held_out_log_likelihood", s.held_out_log_likelihood},
-                      {"final_held_out_log_likelihood", s.final_held_out_log_likelihood},
+                      {"gain", s.gain},
+                      {"gain_std", s.gain_std},
                       {"won", s.won}});
   nlohmann::json summary = {{"program", r.provenance.program},
                             {"input_hash", r.provenance.input_hash},
@@ -205,6 +211,10 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
                             {"localisations", r.particles.table.size()},
                             {"planar", r.planar},
                             {"rounds", g.rounds},
+                            {"verdict", to_string(g.verdict)},
+                            {"verdict_reason", g.verdict_reason},
+                            {"structure_gain", g.structure_gain},
+                            {"structure_gain_std", g.structure_gain_std},
                             {"converged", g.converged},
                             {"stopped_because", g.stopped_because},
                             {"starts", starts},
@@ -216,6 +226,9 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
                             {"text", lines}};
   for (const Stranger& s : unlike)
     summary["unlike_the_others"].push_back({{"particle", s.particle}, {"deviation", s.deviation}});
+  if (g.other)
+    summary["other_average"] = {
+        {"group", g.other->group}, {"held_out_gain", g.other->gain}, {"held_out_gain_std", g.other->gain_std}};
   if (g.symmetry) summary["symmetry"] = pipeline::symmetry_json(*g.symmetry, r.normalisation.scale_nm);
   if (!g.weights_sha256.empty()) summary["weights_sha256"] = g.weights_sha256;
   if (r.resolution)

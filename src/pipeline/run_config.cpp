@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine_fields.hpp"
 #include "config/fields.hpp"
 #include "config/paths.hpp"
 #include "polar/pipeline/outputs.hpp"
@@ -45,6 +46,8 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("search", o.search);
     s.field("optimizer", o.optimizer);
     s.field("symmetry", o.symmetry);
+    s.field("tilt_deg", o.tilt_deg);
+    s.field("flip", o.flip);
     s.field("weights", o.weights);
     s.section("latent", [&](auto& latent) {
       latent.field("template", o.latent.template_kind);
@@ -62,6 +65,7 @@ void fields(Visitor& v, RunConfig& c) {
       latent.field("escape_deg", o.latent.escape_deg);
     });
   });
+  v.section("expert", [&](auto& s) { pipeline::engine_fields(s, c.registration.engine); });
   v.section("output", [&](auto& s) {
     s.field("directory", c.output.directory);
     s.field("formats", c.output.formats);

@@ -147,11 +147,15 @@ void write_run(File& file, const Results& r) {
   file.write_attribute("/run", "converged", static_cast<std::uint8_t>(g.converged ? 1 : 0));
   file.write_attribute("/run", "normalisation_scale_nm", r.normalisation.scale_nm);
   file.write_strings("/run/stopped_because", {g.stopped_because});
+  file.write_string_attribute("/run", "verdict", to_string(g.verdict));
+  file.write_string_attribute("/run", "verdict_reason", g.verdict_reason);
+  file.write_attribute("/run", "structure_gain", g.structure_gain);
+  file.write_attribute("/run", "structure_gain_std", g.structure_gain_std);
   std::vector<std::string> warnings = r.particles.table.warnings;
   warnings.insert(warnings.end(), g.warnings.begin(), g.warnings.end());
   file.write_strings("/run/warnings", warnings);
   std::vector<std::string> stage, start;
-  std::vector<double> seconds, held_out, final_held_out;
+  std::vector<double> seconds, held_out, gain, gain_std;
   std::vector<std::uint8_t> won;
   for (const auto& t : g.timings) {
     stage.push_back(t.stage);
@@ -160,14 +164,15 @@ void write_run(File& file, const Results& r) {
   for (const StartReport& s : g.starts) {
     start.push_back(s.name);
     held_out.push_back(s.held_out_log_likelihood);
-    final_held_out.push_back(s.final_held_out_log_likelihood);
+    gain.push_back(s.gain), gain_std.push_back(s.gain_std);
     won.push_back(s.won ? 1 : 0);
   }
   file.write_strings("/run/timings/stage", stage);
   file.write("/run/timings/seconds", seconds);
   file.write_strings("/run/starts/name", start);
   file.write("/run/starts/held_out_log_likelihood", held_out);
-  file.write("/run/starts/final_held_out_log_likelihood", final_held_out);
+  file.write("/run/starts/gain", gain);
+  file.write("/run/starts/gain_std", gain_std);
   file.write("/run/starts/won", won);
   file.write_attribute("/run/starts", "agreement", g.agreement);
   const double scale_nm = r.normalisation.scale_nm;
