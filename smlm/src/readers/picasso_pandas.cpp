@@ -39,8 +39,10 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
       arrays.push_back(std::move(array));
     }
   }
+  std::vector<SourceColumn> columns;
+  for (const ColumnArray& array : arrays) columns.push_back(array.column);
   LocalisationTable table = build_table(path, path + ":/locs", std::move(arrays), effective);
-  warn_about_lpz(table);
+  judge_lpz(table, columns);
   return table;
 }
 
