@@ -114,8 +114,8 @@ class Planner {
       if (q == Quantity::sigma_lateral && covariance) q = Quantity::sigma_xy;
       const std::size_t column = find_mapped_column(file_, columns_, key, mapping.name);
       const auto by_name = match_heading(parse_heading(columns_[column].name));
-      const bool says_variance = columns_[column].spread == Spread::variance ||
-                                 (by_name && by_name->spread == Spread::variance);
+      const bool says_variance =
+          columns_[column].spread == Spread::variance || (by_name && by_name->spread == Spread::variance);
       const bool variance =
           is_covariance(*q) || mapping.kind == "variance" || (mapping.kind.empty() && says_variance);
       for (auto& others : candidates_) {
@@ -138,8 +138,9 @@ class Planner {
     const auto header = units::parse_length(units::without_square(stated));
     const auto wanted = units::parse_length(units::without_square(mapping.unit));
     if (header && wanted && *header != *wanted) {
-      plan_.warnings.push_back("column '" + columns_[column].name + "' is in " + stated + " by its header, but input.columns." +
-                               key + ".unit says " + mapping.unit + ": " + mapping.unit + " is taken");
+      plan_.warnings.push_back("column '" + columns_[column].name + "' is in " + stated +
+                               " by its header, but input.columns." + key + ".unit says " + mapping.unit +
+                               ": " + mapping.unit + " is taken");
     }
     return mapping.unit;
   }
@@ -156,7 +157,8 @@ class Planner {
     if (best({Quantity::sigma_x, Quantity::sigma_y, Quantity::sigma_lateral}) != Claim::plain) return;
     std::string widths;
     bool per_axis = false;
-    for (const Quantity q : {Quantity::sigma_lateral, Quantity::sigma_x, Quantity::sigma_y, Quantity::sigma_z}) {
+    for (const Quantity q :
+         {Quantity::sigma_lateral, Quantity::sigma_x, Quantity::sigma_y, Quantity::sigma_z}) {
       if (q == Quantity::sigma_z && !per_axis) break;  // the only axial one beside a lateral uncertainty
       auto& list = of(q);
       for (auto c = list.begin(); c != list.end();) {
@@ -171,8 +173,9 @@ class Planner {
       }
     }
     if (!widths.empty()) {
-      plan_.warnings.push_back(widths + ": taken as the width of the PSF, because other columns are called "
-                                        "uncertainties (input.columns says otherwise)");
+      plan_.warnings.push_back(widths +
+                               ": taken as the width of the PSF, because other columns are called "
+                               "uncertainties (input.columns says otherwise)");
     }
   }
 
@@ -232,7 +235,8 @@ class Planner {
     if (!has(Quantity::sigma_xx) || !has(Quantity::sigma_yy)) {
       fail("a covariance needs sigma_xx and sigma_yy", "name them under input.columns");
     }
-    if (!has(Quantity::sigma_zz) && has(Quantity::z) && (has(Quantity::sigma_xz) || has(Quantity::sigma_yz))) {
+    if (!has(Quantity::sigma_zz) && has(Quantity::z) &&
+        (has(Quantity::sigma_xz) || has(Quantity::sigma_yz))) {
       fail("a covariance of z with x or y needs sigma_zz", "name it under input.columns");
     }
     for (const Quantity q : standard_deviations) of(q).clear();
@@ -275,7 +279,8 @@ class Planner {
            "give its unit under input.columns");
     if (*unit != units::Length::pixel) return {units::to_nm(*unit, 0), std::string(units::name(*unit))};
     if (!(options_.pixel_size_nm > 0)) {
-      fail("column '" + source.name + "' is in pixels and their size is not known", "set input.pixel_size_nm");
+      fail("column '" + source.name + "' is in pixels and their size is not known",
+           "set input.pixel_size_nm");
     }
     plan_.keys_used.insert("pixel_size_nm");
     return {options_.pixel_size_nm, "px = " + number_text(options_.pixel_size_nm) + " nm"};
@@ -286,8 +291,8 @@ class Planner {
     const bool squared = units::without_square(candidate.unit) != candidate.unit;
     if (!is_uncertainty(q) || !squared || candidate.mapped || candidate.spread == Spread::variance)
       return candidate.spread;
-    plan_.warnings.push_back("column '" + columns_[candidate.column].name + "' is taken as variances, because its unit is " +
-                             candidate.unit);
+    plan_.warnings.push_back("column '" + columns_[candidate.column].name +
+                             "' is taken as variances, because its unit is " + candidate.unit);
     return Spread::variance;
   }
 
@@ -304,8 +309,9 @@ class Planner {
       if (q == Quantity::x) position_unit_.fill({factor, unit});
       if (q == Quantity::z) position_unit_[1] = {factor, unit};
       const bool square = planned.spread == Spread::variance;
-      line += square ? " (variance, " + (unit.find(' ') == std::string::npos ? unit : "(" + unit + ")") + "^2)"
-                     : " (" + unit + ")";
+      line += square
+                  ? " (variance, " + (unit.find(' ') == std::string::npos ? unit : "(" + unit + ")") + "^2)"
+                  : " (" + unit + ")";
     }
     plan_.used[static_cast<std::size_t>(q)] = planned;
     plan_.mapping.push_back(line);
@@ -323,8 +329,8 @@ class Planner {
 
   void warn_about_units() {
     if (!unitless_positions_.empty()) {
-      plan_.warnings.push_back(unitless_positions_ +
-                               " carry no unit: taken as nm (input.unit says otherwise)");
+      plan_.warnings.push_back(unitless_positions_ + " carry no unit: taken as nm" +
+                               (options_.positions_only ? "" : " (input.unit says otherwise)"));
     }
     if (!unitless_uncertainties_.empty()) {
       plan_.warnings.push_back(unitless_uncertainties_ +
@@ -339,15 +345,18 @@ class Planner {
     if (plan_.has_uncertainty() && axial) return;
     std::string names;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
-      const bool taken = std::any_of(plan_.used.begin(), plan_.used.end(),
-                                     [&](const auto& planned) { return planned && planned->column == i; }) ||
-                         std::find(taken_for_widths_.begin(), taken_for_widths_.end(), i) != taken_for_widths_.end();
-      if (taken || columns_[i].quantity || !sounds_like_uncertainty(parse_heading(columns_[i].name).name)) continue;
+      const bool taken =
+          std::any_of(plan_.used.begin(), plan_.used.end(),
+                      [&](const auto& planned) { return planned && planned->column == i; }) ||
+          std::find(taken_for_widths_.begin(), taken_for_widths_.end(), i) != taken_for_widths_.end();
+      if (taken || columns_[i].quantity || !sounds_like_uncertainty(parse_heading(columns_[i].name).name))
+        continue;
       names += (names.empty() ? "'" : ", '") + columns_[i].name + "'";
     }
     if (!names.empty()) {
-      plan_.warnings.push_back(names + ": named like an uncertainty and not used; if it is one, say so under "
-                                       "input.columns (sigma_x, sigma_y, sigma_z, sigma_xy)");
+      plan_.warnings.push_back(names +
+                               ": named like an uncertainty and not used; if it is one, say so under "
+                               "input.columns (sigma_x, sigma_y, sigma_z, sigma_xy)");
     }
   }
 

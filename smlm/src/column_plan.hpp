@@ -47,7 +47,8 @@ struct ColumnPlan {
     return full_covariance() || (*this)[Quantity::sigma_x] || (*this)[Quantity::sigma_lateral];
   }
   bool has_axial_uncertainty() const {
-    return full_covariance() ? (*this)[Quantity::sigma_zz].has_value() : (*this)[Quantity::sigma_z].has_value();
+    return full_covariance() ? (*this)[Quantity::sigma_zz].has_value()
+                             : (*this)[Quantity::sigma_z].has_value();
   }
   bool full_covariance() const { return (*this)[Quantity::sigma_xx].has_value(); }
 };

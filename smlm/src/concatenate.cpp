@@ -87,7 +87,8 @@ std::vector<std::string> short_names(const std::vector<std::string>& files) {
 }
 
 Concatenation::Concatenation(const std::vector<std::string>& files, const ReadOptions& options)
-    : files_(files), one_per_file_(options.particles == "one_per_file"),
+    : files_(files),
+      one_per_file_(options.particles == "one_per_file"),
       by_column_(options.particles == "column"),
       names_(short_names(files)) {
   // The same path twice would give two particles one name.
@@ -144,8 +145,9 @@ void Concatenation::require_one_depth(const LocalisationTable& table) {
   if (first.empty()) first = files_[appended_];
   if (first_planar_.empty() || first_spatial_.empty()) return;
   throw Error(Fault::input, files_[appended_],
-              table.planar ? "is flat (has no z, or one that says nothing) while '" + first_spatial_ + "' has a z"
-                           : "has a z while '" + first_planar_ + "' is flat (has none, or one that says nothing)",
+              table.planar
+                  ? "is flat (has no z, or one that says nothing) while '" + first_spatial_ + "' has a z"
+                  : "has a z while '" + first_planar_ + "' is flat (has none, or one that says nothing)",
               "register them apart, or all in the plane with input.planar: true");
 }
 
@@ -184,8 +186,9 @@ void Concatenation::append(LocalisationTable table) {
         all_.mapping.push_back(line);
     }
     for (const auto& [name, rows] : table.unassigned) {
-      const auto known = std::find_if(all_.unassigned.begin(), all_.unassigned.end(),
-                                      [&, &wanted = name](const auto& entry) { return entry.first == wanted; });
+      const auto known =
+          std::find_if(all_.unassigned.begin(), all_.unassigned.end(),
+                       [&, &wanted = name](const auto& entry) { return entry.first == wanted; });
       if (known == all_.unassigned.end()) {
         all_.unassigned.emplace_back(name, rows);
       } else {
@@ -203,11 +206,13 @@ void Concatenation::append(LocalisationTable table) {
 
 void Concatenation::warn_about_particles() {
   const auto some = [](const std::vector<std::string>& files) {
-    return files.front() + (files.size() > 1 ? " and " + std::to_string(files.size() - 1) + " more files" : "");
+    return files.front() +
+           (files.size() > 1 ? " and " + std::to_string(files.size() - 1) + " more files" : "");
   };
   if (!with_ignored_particle_column_.empty()) {
-    all_.warnings.push_back(some(with_ignored_particle_column_) +
-                            ": has a column that names particles, which input.particles: one_per_file ignores");
+    all_.warnings.push_back(
+        some(with_ignored_particle_column_) +
+        ": has a column that names particles, which input.particles: one_per_file ignores");
   }
   if (all_.particle_names.empty()) return;
   if (!without_particle_column_.empty()) {

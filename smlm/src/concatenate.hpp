@@ -37,8 +37,8 @@ class Concatenation {
   std::map<std::string, std::vector<std::string>> warned_files_;
 };
 
-/// What files are called in the names of particles: the file name without its extensions, with them where two in
-/// one folder are else alike, and with as many of the folders above as tell equal ones apart.
+/// What files are called in the names of particles: the file name without its extensions, with them where two
+/// in one folder are else alike, and with as many of the folders above as tell equal ones apart.
 std::vector<std::string> short_names(const std::vector<std::string>& files);
 
 }  // namespace smlm

@@ -11,9 +11,9 @@ std::string number_text(double value) {
   constexpr double exact = 9007199254740992.0;  // 2^53: up to here a double is every whole number
   std::array<char, 32> digits{};
   const bool whole = std::abs(value) <= exact && value == std::trunc(value);
-  const auto end = whole ? std::to_chars(digits.data(), digits.data() + digits.size(),
-                                         static_cast<std::int64_t>(value))
-                         : std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto end =
+      whole ? std::to_chars(digits.data(), digits.data() + digits.size(), static_cast<std::int64_t>(value))
+            : std::to_chars(digits.data(), digits.data() + digits.size(), value);
   return {digits.data(), end.ptr};
 }
 

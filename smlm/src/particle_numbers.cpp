@@ -21,10 +21,11 @@ Summary summarise(std::vector<double> values) {
   return {*least, median, *most};
 }
 
-std::vector<double> sigmas_nm(const LocalisationTable& table, bool axial) {
+std::vector<double> sigmas_nm(const LocalisationTable& table, bool axial, std::size_t step) {
   std::vector<double> values;
-  values.reserve(table.size());
-  for (const Covariance& c : table.covariance_nm2) {
+  values.reserve(table.size() / step + 1);
+  for (std::size_t row = 0; row < table.size(); row += step) {
+    const Covariance& c = table.covariance_nm2[row];
     values.push_back(std::sqrt(axial ? static_cast<double>(c[5])
                                      : (static_cast<double>(c[0]) + static_cast<double>(c[3])) / 2));
   }

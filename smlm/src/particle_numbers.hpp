@@ -12,7 +12,7 @@ namespace smlm {
 struct ParticleNumbers {
   std::vector<std::size_t> particle;  // its index in the table
   std::vector<double> localisations;
-  std::vector<double> radius_nm;   // root mean square distance from the centroid; NaN of a single localisation
+  std::vector<double> radius_nm;  // root mean square distance from the centroid; NaN of a single localisation
   std::vector<double> lateral_nm;  // standard deviation of the positions along x and y (root mean square)
   std::vector<double> axial_nm;    // and along z
   std::vector<std::uint32_t> file;
@@ -23,7 +23,8 @@ ParticleNumbers measure_particles(const LocalisationTable& table);
 /// Over finite values; NaN where there are none.
 Summary summarise(std::vector<double> values);
 
-/// Standard deviations of the localisations along z, or laterally (root mean square of x and y).
-std::vector<double> sigmas_nm(const LocalisationTable& table, bool axial);
+/// Standard deviations of the localisations along z, or laterally (root mean square of x and y), of every
+/// `step`-th row.
+std::vector<double> sigmas_nm(const LocalisationTable& table, bool axial, std::size_t step = 1);
 
 }  // namespace smlm

@@ -12,8 +12,9 @@ namespace {
 std::string losses(const LocalisationTable& table) {
   std::string text;
   for (const Rejection& r : table.rejected) {
-    text += (text.empty() ? "" : "; ") + std::to_string(r.rows) + " rows left out: " + r.reason + " (first: row " +
-            std::to_string(r.first_row) + (table.files.size() > 1 ? " of " + table.files[r.file] : "") + ")";
+    text += (text.empty() ? "" : "; ") + std::to_string(r.rows) + " rows left out: " + r.reason +
+            " (first: row " + std::to_string(r.first_row) +
+            (table.files.size() > 1 ? " of " + table.files[r.file] : "") + ")";
   }
   for (const auto& [name, rows] : table.unassigned) {
     text += (text.empty() ? "" : "; ") + std::to_string(rows) + " rows of no particle (" +

@@ -134,10 +134,11 @@ void warn_about_picks(LocalisationTable& table, const std::vector<Centre>& centr
                       double radius_nm) {
   const auto empty = static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 0U));
   if (!centres.empty() && empty == centres.size() && table.size() > 0) {
-    throw Error(Fault::input, table.files.front(),
-                "none of the " + std::to_string(centres.size()) + " picks holds a localisation: the centres are at " +
-                    spans(centres) + ", the localisations at " + spans(table.position_nm),
-                "input.pick.centres and the table must be in one frame (units: input.unit, input.pixel_size_nm)");
+    throw Error(
+        Fault::input, table.files.front(),
+        "none of the " + std::to_string(centres.size()) + " picks holds a localisation: the centres are at " +
+            spans(centres) + ", the localisations at " + spans(table.position_nm),
+        "input.pick.centres and the table must be in one frame (units: input.unit, input.pixel_size_nm)");
   }
   if (empty > 0) {
     table.warnings.push_back(std::to_string(empty) + " of " + std::to_string(centres.size()) +
@@ -145,10 +146,13 @@ void warn_about_picks(LocalisationTable& table, const std::vector<Centre>& centr
   }
   std::size_t cut = 0;
   for (std::size_t i = 0; i < centres.size(); ++i)
-    cut += static_cast<double>(around[i]) > most_in_ring * static_cast<double>(inside[i]) && inside[i] > 0 ? 1U : 0U;
-  if (4 * cut > centres.size() - empty) {
+    cut += static_cast<double>(around[i]) > most_in_ring * static_cast<double>(inside[i]) && inside[i] > 0
+               ? 1U
+               : 0U;
+  if (10 * cut > centres.size() - empty) {
     table.warnings.push_back("in " + std::to_string(cut) + " of " + std::to_string(centres.size() - empty) +
-                             " picks the localisations go on right outside the radius of " + number_text(radius_nm) +
+                             " picks the localisations go on right outside the radius of " +
+                             number_text(radius_nm) +
                              " nm: is it too small for the particles? (input.pick.radius_nm)");
   }
 }
@@ -164,7 +168,8 @@ std::vector<Centre> read_picasso_regions(const std::string& path) {
   std::vector<double> numbers;
   bool within = false;
   for (std::string_view line; lines.next(line);) {
-    const bool is_key = !line.empty() && line.front() != ' ' && line.front() != '-' && line.front() != '[' && line.front() != ']';
+    const bool is_key = !line.empty() && line.front() != ' ' && line.front() != '-' && line.front() != '[' &&
+                        line.front() != ']';
     if (is_key) within = line.rfind("Centers:", 0) == 0;
     if (!within) continue;
     if (is_key) line.remove_prefix(std::string_view("Centers:").size());
@@ -194,7 +199,8 @@ void require_radius(double radius_nm) {
 
 }  // namespace
 
-std::vector<Centre> read_centres(const std::string& path, const ReadOptions& options, LocalisationTable& table) {
+std::vector<Centre> read_centres(const std::string& path, const ReadOptions& options,
+                                 LocalisationTable& table) {
   // Units but pixels have round sizes.
   const bool in_pixels = units::length_of(table.position_unit_nm) == units::Length::pixel;
   ReadOptions own = options;
@@ -203,7 +209,8 @@ std::vector<Centre> read_centres(const std::string& path, const ReadOptions& opt
   if (!(own.pixel_size_nm > 0) && in_pixels) own.pixel_size_nm = table.position_unit_nm;
   if (is_picasso_regions(path)) {
     if (!(own.pixel_size_nm > 0))
-      throw Error(Fault::input, path, "is in camera pixels and their size is not known", "set input.pixel_size_nm");
+      throw Error(Fault::input, path, "is in camera pixels and their size is not known",
+                  "set input.pixel_size_nm");
     table.keys_used.insert("pixel_size_nm");
     std::vector<Centre> centres = read_picasso_regions(path);
     for (Centre& centre : centres) {

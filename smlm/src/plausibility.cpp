@@ -1,5 +1,8 @@
-// Numbers that no microscope gives: nearly always a wrong unit, a wrong column, or the noise taken for a particle.
+// Numbers that no microscope gives: nearly always a wrong unit, a wrong column, or the noise taken for a
+// particle.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -22,11 +25,12 @@ constexpr double giant_localisations = 10;
 constexpr double giant_radius = 4;
 constexpr std::size_t fewest_for_a_giant = 4;
 
+// Three significant digits say enough.
 std::string nm(double value) {
-  // Three significant digits say enough.
-  if (!(value > 0)) return number_text(value) + " nm";
-  const double scale = std::pow(10.0, std::floor(std::log10(value)) - 2);
-  return number_text(std::round(value / scale) * scale) + " nm";
+  std::array<char, 32> digits{};
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 3).ptr;
+  return std::string(digits.data(), end) + " nm";
 }
 
 // The lines of the mapping that say where a quantity comes from, in brackets.
@@ -40,11 +44,17 @@ std::string source_of(const LocalisationTable& table, const std::vector<std::str
   return lines.empty() ? lines : lines + ")";
 }
 
+// Of rows spread over the table: so many tell an order of magnitude.
+double median_sigma_nm(const LocalisationTable& table, bool axial) {
+  constexpr std::size_t enough = 100000;
+  return summarise(sigmas_nm(table, axial, table.size() / enough + 1)).median;
+}
+
 bool far_apart(double a, double b) { return a > 0 && b > 0 && std::max(a, b) > other_unit * std::min(a, b); }
 
 void judge_uncertainties(const LocalisationTable& table, std::vector<std::string>& warnings) {
   if (table.sigma_assumed) return;
-  const double lateral = summarise(sigmas_nm(table, false)).median;
+  const double lateral = median_sigma_nm(table, false);
   const std::string from = source_of(table, {"sigma_x", "sigma_xy", "sigma_xx"});
   if (lateral > psf_like_sigma_nm) {
     warnings.push_back("the median lateral uncertainty is " + nm(lateral) +
@@ -55,7 +65,7 @@ void judge_uncertainties(const LocalisationTable& table, std::vector<std::string
                        ", smaller than any microscope's: is it in the right unit?" + from);
   }
   if (table.planar || table.axial_sigma_assumed) return;
-  const double axial = summarise(sigmas_nm(table, true)).median;
+  const double axial = median_sigma_nm(table, true);
   const std::string from_z = source_of(table, {"sigma_z", "sigma_zz"});
   if (axial < tiny_sigma_nm) {
     warnings.push_back("the median axial uncertainty is " + nm(axial) +
@@ -69,7 +79,7 @@ void judge_uncertainties(const LocalisationTable& table, std::vector<std::string
 void judge_extents(const LocalisationTable& table, const ParticleNumbers& particles,
                    std::vector<std::string>& warnings) {
   const double radius = summarise(particles.radius_nm).median;
-  const double lateral = summarise(sigmas_nm(table, false)).median;
+  const double lateral = median_sigma_nm(table, false);
   if (lateral > radius) {
     warnings.push_back("the median lateral uncertainty, " + nm(lateral) +
                        ", is larger than the particles, whose radius is " + nm(radius) +
@@ -105,8 +115,9 @@ void judge_files(const LocalisationTable& table, const ParticleNumbers& particle
     }
   }
   if (least < HUGE_VAL && far_apart(least, most)) {
-    warnings.push_back("the particles' median radius is " + nm(least) + " in " + table.files[smallest] + " and " +
-                       nm(most) + " in " + table.files[largest] + ": are the files in different units?");
+    warnings.push_back("the particles' median radius is " + nm(least) + " in " + table.files[smallest] +
+                       " and " + nm(most) + " in " + table.files[largest] +
+                       ": are the files in different units?");
   }
 }
 
@@ -119,16 +130,19 @@ void judge_giants(const LocalisationTable& table, const ParticleNumbers& particl
   std::size_t giants = 0;
   std::string names;
   for (std::size_t i = 0; i < particles.particle.size(); ++i) {
-    if (particles.localisations[i] <= giant_localisations * usual && !(particles.radius_nm[i] > giant_radius * radius))
+    if (particles.localisations[i] <= giant_localisations * usual &&
+        !(particles.radius_nm[i] > giant_radius * radius))
       continue;
     if (giants++ >= most_named) continue;
     names += (names.empty() ? "'" : ", '") + table.particle_names[particles.particle[i]] + "' (" +
-             number_text(particles.localisations[i]) + " localisations, radius " + nm(particles.radius_nm[i]) + ")";
+             number_text(particles.localisations[i]) + " localisations, radius " +
+             nm(particles.radius_nm[i]) + ")";
   }
   // Where many are large, none is out of the ordinary.
   if (giants == 0 || 10 * giants > particles.particle.size() + 10) return;
-  warnings.push_back("far larger than the other particles (median " + number_text(usual) + " localisations, radius " +
-                     nm(radius) + "): " + names + (giants > most_named ? " and " + std::to_string(giants - most_named) + " more" : "") +
+  warnings.push_back("far larger than the other particles (median " + number_text(usual) +
+                     " localisations, radius " + nm(radius) + "): " + names +
+                     (giants > most_named ? " and " + std::to_string(giants - most_named) + " more" : "") +
                      "; if that is what belongs to no particle, give its id under input.unassigned_particle");
 }
 

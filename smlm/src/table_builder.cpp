@@ -3,13 +3,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <set>
 #include <unordered_map>
 
 #include "missing.hpp"
 #include "smlm/error.hpp"
 #include "smlm/number_text.hpp"
+#include "text/number.hpp"
 
 namespace smlm {
 namespace {
@@ -30,6 +31,17 @@ constexpr double gibibyte = 1024.0 * 1024 * 1024;
 
 double installed_gibibytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE)) / gibibyte;
+}
+
+// Calls visit(vector) for everything that has one value a row.
+template <class Visit>
+void every_column(LocalisationTable& table, const Visit& visit) {
+  visit(table.position_nm);
+  visit(table.covariance_nm2);
+  visit(table.particle);
+  visit(table.source_file);
+  visit(table.source_row);
+  for (ExtraColumn& extra : table.extra) visit(extra.values);
 }
 
 }  // namespace
@@ -94,8 +106,8 @@ std::string TableBuilder::words(Reason reason, bool of_no_particle) {
   return std::string(texts[static_cast<std::size_t>(reason)]) + (of_no_particle ? ", in no particle" : "");
 }
 
-TableBuilder::Problem TableBuilder::sigma(const RowBlock& block, std::size_t row, const PlannedColumn& planned,
-                                          double& value) const {
+TableBuilder::Problem TableBuilder::sigma(const RowBlock& block, std::size_t row,
+                                          const PlannedColumn& planned, double& value) const {
   const double raw = block.columns[planned.column][row];
   value = planned.factor * (planned.spread == Spread::variance && raw > 0 ? std::sqrt(raw) : raw);
   if (value >= smallest_sigma_nm && value <= largest_nm) return {};
@@ -133,7 +145,8 @@ TableBuilder::Problem TableBuilder::lateral_part(const RowBlock& block, std::siz
     return {};
   }
   if (plan_[Quantity::sigma_lateral]) {
-    if (const Problem p = sigma(block, row, *plan_[Quantity::sigma_lateral], x); p.reason != Reason::none) return p;
+    if (const Problem p = sigma(block, row, *plan_[Quantity::sigma_lateral], x); p.reason != Reason::none)
+      return p;
     y = x;
   } else if (plan_[Quantity::sigma_x]) {
     if (const Problem p = sigma(block, row, *plan_[Quantity::sigma_x], x); p.reason != Reason::none) return p;
@@ -153,7 +166,8 @@ TableBuilder::Problem TableBuilder::axial_part(const RowBlock& block, std::size_
   const PlannedColumn& z = *plan_[Quantity::z];
   position[2] = z.factor * block.columns[z.column][row];
   if (!(std::abs(position[2]) <= largest_nm)) {
-    return {std::isfinite(position[2]) ? Reason::position_out_of_range : Reason::position_not_finite, z.column};
+    return {std::isfinite(position[2]) ? Reason::position_out_of_range : Reason::position_not_finite,
+            z.column};
   }
   if (plan_.full_covariance()) {
     const auto element = [&](Quantity q) {
@@ -187,11 +201,11 @@ TableBuilder::Problem TableBuilder::axial_part(const RowBlock& block, std::size_
 std::string TableBuilder::failure(const RowBlock& block, std::size_t row, const Problem& problem) const {
   const SourceColumn& column = columns_[problem.column];
   const double value = block.columns[problem.column][row];
-  const std::string place = block.line.empty() ? "row " + std::to_string(block.row[row])
-                                               : std::to_string(block.line[row]) + ":" +
-                                                     std::to_string(problem.column + 1);
-  return (block.line.empty() ? ": " : ":") + place + ": " + words(problem.reason, false) + " (column '" + column.name +
-         "' is " + (std::isnan(value) ? "empty or no number" : number_text(value)) + ")";
+  const std::string place = block.line.empty()
+                                ? "row " + std::to_string(block.row[row])
+                                : std::to_string(block.line[row]) + ":" + std::to_string(problem.column + 1);
+  return (block.line.empty() ? ": " : ":") + place + ": " + words(problem.reason, false) + " (column '" +
+         column.name + "' is " + (std::isnan(value) ? "empty or no number" : number_text(value)) + ")";
 }
 
 // Rows that are left out without a word of the user's: nobody asks for what is in no particle.
@@ -211,7 +225,8 @@ bool TableBuilder::is_no_particle(double value) {
   if (!plan_[Quantity::particle]) return false;
   const std::size_t column = plan_[Quantity::particle]->column;
   return columns_[column].text && !std::isnan(value)
-             ? names_no_particle(labels_[column].name(static_cast<std::int64_t>(value)), plan_.unassigned_particle)
+             ? names_no_particle(labels_[column].name(static_cast<std::int64_t>(value)),
+                                 plan_.unassigned_particle)
              : !(value >= 0);
 }
 
@@ -247,6 +262,10 @@ void TableBuilder::require_memory_for(std::uint64_t rows) const {
                   std::to_string(std::llround(std::ceil(needed))) + " GiB of memory; this machine has " +
                   std::to_string(std::llround(installed)) + " GiB",
               "split the table, or use a machine with more memory");
+}
+
+void TableBuilder::reserve(std::uint64_t rows) {
+  every_column(table_, [&](auto& column) { column.reserve(rows); });
 }
 
 void TableBuilder::append(const RowBlock& block) {
@@ -305,7 +324,8 @@ std::optional<double> common_z(const LocalisationTable& table, std::size_t& othe
   }
   for (const auto& position : table.position_nm) equal += position[2] == candidate;
   others = rows - equal;
-  if (rows == 0 || static_cast<double>(others) > most_off_plane * static_cast<double>(rows)) return std::nullopt;
+  if (rows == 0 || static_cast<double>(others) > most_off_plane * static_cast<double>(rows))
+    return std::nullopt;
   return candidate;
 }
 
@@ -355,28 +375,20 @@ bool TableBuilder::flatten() {
 void TableBuilder::drop_suspended() {
   if (suspended_.empty()) return;
   if (!first_failure_.empty()) throw Error(Fault::input, where_ + first_failure_, "", remedy);
-  std::size_t kept = 0, next = 0;
+  std::vector<std::size_t> kept;
+  std::size_t next = 0;
   for (std::size_t row = 0; row < table_.size(); ++row) {
-    if (next < suspended_.size() && suspended_[next].row == row) {
-      const Reason reason = suspended_[next++].reason;
-      reject(words(reason, !drop_ && reason != Reason::sigma_z_infinite), table_.source_row[row]);
+    if (next == suspended_.size() || suspended_[next].row != row) {
+      kept.push_back(row);
       continue;
     }
-    if (kept != row) {
-      table_.position_nm[kept] = table_.position_nm[row];
-      table_.covariance_nm2[kept] = table_.covariance_nm2[row];
-      table_.particle[kept] = table_.particle[row];
-      table_.source_row[kept] = table_.source_row[row];
-      for (ExtraColumn& extra : table_.extra) extra.values[kept] = extra.values[row];
-    }
-    ++kept;
+    const Reason reason = suspended_[next++].reason;
+    reject(words(reason, !drop_ && reason != Reason::sigma_z_infinite), table_.source_row[row]);
   }
-  table_.position_nm.resize(kept);
-  table_.covariance_nm2.resize(kept);
-  table_.particle.resize(kept);
-  table_.source_file.resize(kept);
-  table_.source_row.resize(kept);
-  for (ExtraColumn& extra : table_.extra) extra.values.resize(kept);
+  every_column(table_, [&](auto& column) {
+    for (std::size_t i = 0; i < kept.size(); ++i) column[i] = column[kept[i]];
+    column.resize(kept.size());
+  });
 }
 
 // Ids that are the same number may be meant to be one particle.
@@ -386,10 +398,10 @@ void TableBuilder::warn_about_similar_names() {
   std::string example;
   for (const std::string& name : table_.particle_names) {
     double value = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), value);
-    if (error != std::errc() || end != name.data() + name.size()) continue;
+    if (!parse_number(name, value)) continue;
     // Beyond 2^53 neighbours are one double: whole numbers with other digits are other numbers.
-    const bool digits_only = std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+    const bool digits_only =
+        std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
     if (digits_only && name.front() != '0' && value > 9e15) continue;
     const auto [found, fresh] = spelling.emplace(value, &name);
     if (fresh) continue;
@@ -401,14 +413,34 @@ void TableBuilder::warn_about_similar_names() {
   }
 }
 
+// Programs that keep ids as floating-point numbers write "1.0000" or "1.0e+00"; where all are whole, the
+// digits behind the point say nothing.
+void TableBuilder::strip_decimals() {
+  std::set<std::string> seen;
+  std::vector<std::string> whole;
+  for (const std::string& name : table_.particle_names) {
+    double value = 0;
+    if (name.find('.') == std::string::npos || !parse_number(name, value) || value != std::trunc(value) ||
+        !seen.insert(number_text(value)).second)
+      return;
+    whole.push_back(number_text(value));
+  }
+  if (whole.empty()) return;
+  table_.warnings.push_back("particle ids are whole numbers written with decimals ('" +
+                            table_.particle_names.front() + "'): written as '" + whole.front() + "'");
+  table_.particle_names = std::move(whole);
+}
+
 LocalisationTable TableBuilder::finish() {
   if (!flatten()) drop_suspended();
   if (table_.axial_sigma_assumed && !table_.sigma_assumed && !positions_only_)
     table_.warnings.emplace_back("has no axial uncertainty: twice the lateral one is assumed");
   table_.particle_names = particles_.take();
+  strip_decimals();
   warn_about_similar_names();
   std::vector<std::string> none = none_names_.take();
-  for (std::size_t i = 0; i < none.size(); ++i) table_.unassigned.emplace_back(std::move(none[i]), none_rows_[i]);
+  for (std::size_t i = 0; i < none.size(); ++i)
+    table_.unassigned.emplace_back(std::move(none[i]), none_rows_[i]);
   for (std::size_t i = 0; i < plan_.extra.size(); ++i) {
     if (columns_[plan_.extra[i]].text) table_.extra[i].labels = labels_[plan_.extra[i]].take();
   }

@@ -35,11 +35,13 @@ class TableBuilder {
   void make_text(std::size_t column, std::vector<double>& block_values);
   /// Whether a value of the particle column (see label()) stands for no particle.
   bool is_no_particle(double value);
+  /// Makes room for about so many rows.
+  void reserve(std::uint64_t rows);
   /// Error(resource) where the table would not fit into the machine's memory with this many rows.
   void require_memory_for(std::uint64_t rows) const;
   /// Appends the rows that can be used. A row that cannot is an Error(input) naming file, row and column, or
-  /// a counted rejection where options.drop_nonfinite asks for it or the row belongs to no particle. What only
-  /// z and its uncertainty lack is judged by finish(), when it is known whether z says anything.
+  /// a counted rejection where options.drop_nonfinite asks for it or the row belongs to no particle. What
+  /// only z and its uncertainty lack is judged by finish(), when it is known whether z says anything.
   void append(const RowBlock& block);
   /// Rows that the source itself marks as unusable.
   void reject(const std::string& reason, std::uint64_t row, std::uint64_t rows = 1);
@@ -83,6 +85,7 @@ class TableBuilder {
   /// Decides whether z says anything; true when the table is planar because it does not.
   bool flatten();
   void drop_suspended();
+  void strip_decimals();
   void warn_about_similar_names();
 
   std::string where_;
@@ -92,7 +95,8 @@ class TableBuilder {
   double assumed_sigma_nm_;
   NameIndex particles_;
   std::vector<std::int64_t> particle_of_label_;  // of the particle column's labels; -1: none
-  double last_number_ = std::numeric_limits<double>::quiet_NaN();  // rows of one particle mostly follow each other
+  double last_number_ =
+      std::numeric_limits<double>::quiet_NaN();  // rows of one particle mostly follow each other
   std::int64_t last_particle_ = -1;
   NameIndex none_names_;
   std::vector<std::uint64_t> none_rows_;  // how often each was met

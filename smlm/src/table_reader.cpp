@@ -199,7 +199,8 @@ LocalisationTable read_tables(const std::vector<std::string>& files, const ReadO
     all.append(std::move(table));
   }
   LocalisationTable table = all.finish();
-  for (auto& more : {keys_without_effect(options, table), implausibilities(table), describe(find_repetitions(table))})
+  for (auto& more :
+       {keys_without_effect(options, table), implausibilities(table), describe(find_repetitions(table))})
     table.warnings.insert(table.warnings.end(), more.begin(), more.end());
   return table;
 }

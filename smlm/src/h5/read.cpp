@@ -167,11 +167,11 @@ std::vector<std::string> File::read_member_strings(const std::string& dataset, c
   const int index = H5Tget_member_index(type.get(), member.c_str());
   const Handle element(H5Tget_member_type(type.get(), static_cast<unsigned>(index)), H5Tclose);
   if (H5Tis_variable_str(element.get()) != 0)
-    state_->fail_input(dataset, "its field '" + member + "' holds text of variable length", "write it with a fixed one");
+    state_->fail_input(dataset, "its field '" + member + "' holds text of variable length",
+                       "write it with a fixed one");
   checked_member_elements(dataset, member, first, rows, H5Tget_size(element.get()));
-  return read_text(element.get(), rows, [&](hid_t memory, void* out) {
-    read_field(dataset, member, memory, first, rows, out);
-  });
+  return read_text(element.get(), rows,
+                   [&](hid_t memory, void* out) { read_field(dataset, member, memory, first, rows, out); });
 }
 
 std::vector<std::string> File::read_strings(const std::string& dataset) const {

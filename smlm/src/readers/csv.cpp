@@ -46,8 +46,9 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
   if (picasso.empty()) return table;
   if (!options.unit.empty()) table.keys_used.insert("unit");
   judge_lpz(table, picasso);
-  table.warnings.push_back("has the columns of Picasso: x, y, lpx and lpy are taken in camera pixels, z in nm, lpz in " +
-                           options.lpz_unit + " (input.columns says otherwise)");
+  table.warnings.push_back(
+      "has the columns of Picasso: x, y, lpx and lpy are taken in camera pixels, z in nm, lpz in " +
+      options.lpz_unit + " (input.columns says otherwise)");
   return table;
 }
 

@@ -148,7 +148,8 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
     return csv_columns(path, header, effective);
   };
   LocalisationTable table = read_text_table(path, options, format);
-  if (units::length_of(table.position_unit_nm) == units::Length::pixel) table.keys_used.insert("pixel_size_nm");
+  if (units::length_of(table.position_unit_nm) == units::Length::pixel)
+    table.keys_used.insert("pixel_size_nm");
   return table;
 }
 

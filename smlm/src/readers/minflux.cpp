@@ -81,8 +81,9 @@ LocalisationTable build_minflux_table(const std::string& path, MinfluxRows rows,
   if (!table.planar) {
     table.keys_used.insert("minflux_z_factor");
     if (options.minflux_z_factor != 1)
-      table.warnings.push_back("MINFLUX z is multiplied by " + number_text(options.minflux_z_factor) +
-                               " for the refractive index mismatch (input.minflux_z_factor; 1 keeps it as measured)");
+      table.warnings.push_back(
+          "MINFLUX z is multiplied by " + number_text(options.minflux_z_factor) +
+          " for the refractive index mismatch (input.minflux_z_factor; 1 keeps it as measured)");
   }
   if (measured)
     table.warnings.push_back("MINFLUX files hold no uncertainty: the spread within each trace is taken");

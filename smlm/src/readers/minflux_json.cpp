@@ -92,9 +92,10 @@ class Records {
   }
 
   [[noreturn]] void fail() const {
-    throw Error(Fault::input, path_,
-                "record " + std::to_string(row_) + " has no tid or no loc of two or three numbers as in the others",
-                "is it a MINFLUX table?");
+    throw Error(
+        Fault::input, path_,
+        "record " + std::to_string(row_) + " has no tid or no loc of two or three numbers as in the others",
+        "is it a MINFLUX table?");
   }
 
   std::string path_;

@@ -1,5 +1,6 @@
 // MINFLUX (abberior) .mat, MATLAB 5: the variables tid, vld, tim, ... (1 x N) and the struct itr, whose
-// fields are N x iterations, loc N x iterations x 3 (2 of measurements in the plane). The last iteration is the final one.
+// fields are N x iterations, loc N x iterations x 3 (2 of measurements in the plane). The last iteration is
+// the final one.
 #include <algorithm>
 
 #include "../mat_v5.hpp"

@@ -41,7 +41,8 @@ Layout layout_of(const std::string& path, const NpyHeader& header) {
                 {}};
   const std::size_t axes = nested != nullptr ? 2 : 1;
   if (layout.location == nullptr || layout.trace == nullptr || layout.location->shape.size() != axes ||
-      (layout.location->shape.back() != 3 && layout.location->shape.back() != 2) || layout.location->count() == 0 || layout.trace->count() != 1) {
+      (layout.location->shape.back() != 3 && layout.location->shape.back() != 2) ||
+      layout.location->count() == 0 || layout.trace->count() != 1) {
     throw Error(Fault::input, path, "is not a MINFLUX table: it has no loc and tid",
                 "export the table as CSV with a header");
   }

@@ -22,8 +22,9 @@ bool recognises(const FileHead& head) {
 }
 
 // A column of ids as numbers of the builder's words.
-std::vector<double> read_ids(const h5::File& file, const std::string& member, h5::Kind kind, std::uint64_t first,
-                             std::uint64_t rows, TableBuilder& builder, std::size_t column) {
+std::vector<double> read_ids(const h5::File& file, const std::string& member, h5::Kind kind,
+                             std::uint64_t first, std::uint64_t rows, TableBuilder& builder,
+                             std::size_t column) {
   std::vector<double> ids;
   ids.reserve(rows);
   if (kind == h5::Kind::text) {

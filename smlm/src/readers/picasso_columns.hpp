@@ -17,8 +17,8 @@ SourceColumn picasso_column(const std::string& name, const ReadOptions& options)
 /// either.
 ReadOptions with_picasso_pixel_size(const std::string& path, const ReadOptions& options);
 
-/// Notes that options.lpz_unit had a say, and warns when lpz was read as nm and its median is so small that it looks
-/// like pixels.
+/// Notes that options.lpz_unit had a say, and warns when lpz was read as nm and its median is so small that
+/// it looks like pixels.
 void judge_lpz(LocalisationTable& table, const std::vector<SourceColumn>& columns);
 
 }  // namespace smlm::readers

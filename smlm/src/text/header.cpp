@@ -59,7 +59,8 @@ struct Cells {
   }
   // Neither a number nor nothing at all: names, or units.
   bool all_words() const {
-    return std::none_of(cells.begin(), cells.end(), [&](const std::string& c) { return is_number(c, delimiter); }) &&
+    return std::none_of(cells.begin(), cells.end(),
+                        [&](const std::string& c) { return is_number(c, delimiter); }) &&
            std::any_of(cells.begin(), cells.end(), [](const std::string& c) { return !is_missing(c); });
   }
   bool names(Quantity quantity) const {
@@ -91,7 +92,8 @@ Cells cells_of(std::string_view line) {
 std::optional<char> stated_separator(std::string_view content) {
   if (content.size() >= 2 && content.front() == '"' && content.back() == '"')
     content = content.substr(1, content.size() - 2);
-  if (content.size() == 5 && (content.substr(0, 4) == "sep=" || content.substr(0, 4) == "SEP=")) return content[4];
+  if (content.size() == 5 && (content.substr(0, 4) == "sep=" || content.substr(0, 4) == "SEP="))
+    return content[4];
   return std::nullopt;
 }
 
@@ -125,7 +127,8 @@ class HeaderParser {
     if (!found) at = 0;
     if (at > 0) {
       header_.warnings.push_back(std::to_string(at) + (at == 1 ? " line" : " lines") +
-                                 " before the header skipped, the first '" + looked.front().text.substr(0, 40) + "'");
+                                 " before the header skipped, the first '" +
+                                 looked.front().text.substr(0, 40) + "'");
     }
     const Cells cells = separated(looked[at].text);
     header_.delimiter = cells.delimiter;
@@ -142,7 +145,9 @@ class HeaderParser {
   }
 
  private:
-  Cells separated(std::string_view line) const { return separator_ ? cells_of(line, *separator_) : cells_of(line); }
+  Cells separated(std::string_view line) const {
+    return separator_ ? cells_of(line, *separator_) : cells_of(line);
+  }
 
   // The next line that is neither blank nor a comment.
   bool content_line(PendingLine& found) {
@@ -150,7 +155,8 @@ class HeaderParser {
     while (next_(line)) {
       if (first_) {
         for (const std::string_view mark : utf16_marks) {
-          if (line.substr(0, 2) == mark) throw Error(Fault::input, path_, "is UTF-16 text", "save it as UTF-8");
+          if (line.substr(0, 2) == mark)
+            throw Error(Fault::input, path_, "is UTF-16 text", "save it as UTF-8");
         }
         if (line.substr(0, 3) == byte_order_mark) line.remove_prefix(3);
       }
@@ -203,8 +209,10 @@ class HeaderParser {
                                  (units_row ? " gives the units" : " repeats the names") + " of the columns");
       for (std::size_t i = 0; units_row && i < row.cells.size(); ++i) {
         std::string unit = row.cells[i];
-        if (unit.size() > 2 && (unit.front() == '(' || unit.front() == '[')) unit = unit.substr(1, unit.size() - 2);
-        if (!unit.empty() && parse_heading(header_.cells[i]).unit.empty()) header_.cells[i] += " [" + unit + "]";
+        if (unit.size() > 2 && (unit.front() == '(' || unit.front() == '['))
+          unit = unit.substr(1, unit.size() - 2);
+        if (!unit.empty() && parse_heading(header_.cells[i]).unit.empty())
+          header_.cells[i] += " [" + unit + "]";
       }
       header_.pending.erase(header_.pending.begin());
     }

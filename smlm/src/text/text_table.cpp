@@ -8,13 +8,14 @@
 #include "../table_builder.hpp"
 #include "number.hpp"
 #include "smlm/error.hpp"
+#include "smlm/regular_file.hpp"
 
 namespace smlm {
 namespace {
 
 constexpr std::size_t block_rows = 8192;
 
-std::string_view without_blanks(std::string_view text) {
+inline std::string_view without_blanks(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   return text;
@@ -99,6 +100,7 @@ class RowParser {
   void parse(std::string_view line, std::uint64_t number) {
     if (delimiter_ == ' ') line = without_blanks(line);
     const std::string_view whole = line;
+    bytes_ += line.size() + 1;
     std::optional<std::size_t> bad;
     std::string_view bad_text;
     Field field;
@@ -134,6 +136,8 @@ class RowParser {
   }
 
   void flush() {
+    // After the first block it is known how long lines are.
+    if (rows_ == block_rows) builder_.reserve(static_cast<std::uint64_t>(expected_rows()));
     builder_.append(block_);
     for (auto& column : block_.columns) column.clear();
     block_.row.clear();
@@ -146,6 +150,14 @@ class RowParser {
                 "has " + std::to_string(count_fields(line, delimiter_)) + " fields where the header has " +
                     std::to_string(fields_),
                 "is a line cut, or a decimal written with a comma?");
+  }
+
+  // As many as the file would hold of lines like these; of a compressed file fewer than there are.
+  double expected_rows() const {
+    const auto bytes = static_cast<double>(require_regular_file(path_));
+    constexpr double margin = 1.01;
+    return std::max(static_cast<double>(rows_),
+                    margin * bytes * static_cast<double>(rows_) / static_cast<double>(bytes_));
   }
 
   double label(std::size_t column, const Field& field) {
@@ -187,7 +199,7 @@ class RowParser {
   std::optional<std::size_t> particle_;
   bool fraction_ = false, commas_ = false;  // a number had a decimal point, a decimal comma
   RowBlock block_;
-  std::uint64_t rows_ = 0;
+  std::uint64_t rows_ = 0, bytes_ = 0;
 };
 
 // A column holds words when its first row does.

@@ -41,9 +41,9 @@ std::vector<SourceColumn> columns_by_role(const std::vector<std::string>& cells,
 std::vector<SourceColumn> nm_columns_by_role(const std::vector<std::string>& cells,
                                              const std::vector<Role>& roles);
 
-/// Parses strictly: every line has as many fields as the header; in columns that are used every field is a number
-/// as a whole (with a decimal comma where commas do not separate fields) or says that there is none; a column
-/// that is only kept becomes one of text where a row has a word in it. Errors are Error(input) at
+/// Parses strictly: every line has as many fields as the header; in columns that are used every field is a
+/// number as a whole (with a decimal comma where commas do not separate fields) or says that there is none; a
+/// column that is only kept becomes one of text where a row has a word in it. Errors are Error(input) at
 /// file:line:field. Numbers obey no locale.
 LocalisationTable read_text_table(const std::string& path, const ReadOptions& options,
                                   const TextFormat& format = {});

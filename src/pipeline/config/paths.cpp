@@ -26,16 +26,18 @@ std::string resolve_path(const std::string& path, const std::string& folder) {
 
 namespace {
 [[noreturn]] void refuse_missing(const std::string& pattern, const std::string& path) {
-  const bool windows = pattern.find('\\') != std::string::npos;
+  // In double quotes YAML makes a tab of the letters \\t.
+  const bool windows = pattern.find_first_of("\\\t") != std::string::npos;
   const bool variable = pattern.find('$') != std::string::npos;
   const bool braces = pattern.find('{') != std::string::npos;
   const std::vector<std::string> other_case = matching_but_for_case(path);
-  throw smlm::Error(smlm::Fault::input, path, "no such file",
-                    windows               ? "folders are separated by /, and \\ is a letter of a name"
-                    : variable            ? "variables are not replaced: write the path, or ~ for your home"
-                    : braces              ? "braces are no pattern: list the files, or use *"
-                    : !other_case.empty() ? "but for upper and lower case there is '" + other_case.front() + "'"
-                                          : "correct input.files");
+  throw smlm::Error(
+      smlm::Fault::input, path, "no such file",
+      windows    ? "folders are separated by / (\\ is a letter of a name, and in double quotes \\t is a tab)"
+      : variable ? "variables are not replaced: write the path, or ~ for your home"
+      : braces   ? "braces are no pattern: list the files, or use *"
+      : !other_case.empty() ? "but for upper and lower case there is '" + other_case.front() + "'"
+                            : "correct input.files");
 }
 }  // namespace
 
