@@ -13,8 +13,9 @@ namespace {
 constexpr std::uint32_t kSplitStage = 0x91;
 constexpr std::size_t kFewestParticles = 4;
 
-// Which half every particle belongs to: copies of a measurement go where the first of them goes.
-std::vector<bool> split(const smlm::ParticleSet& set, std::uint64_t seed) {
+}  // namespace
+
+std::vector<bool> second_half(const smlm::ParticleSet& set, std::uint64_t seed) {
   const std::size_t n = set.particles.size();
   const std::vector<std::uint32_t> order = random_order(n, KeyedRandom(seed, 0, kSplitStage));
   std::vector<bool> second(n);
@@ -31,6 +32,7 @@ std::vector<bool> split(const smlm::ParticleSet& set, std::uint64_t seed) {
   return second;
 }
 
+namespace {
 Results registered(const smlm::ParticleSet& all, const std::vector<bool>& second, bool want_second,
                    RegistrationOptions options, Progress& progress, Checkpoint& checkpoint,
                    const Engine& engine) {
@@ -65,7 +67,7 @@ ResolutionReport resolve_halves(const smlm::ParticleSet& particles, const Regist
   ResolutionReport report;
   PartOfCheckpoint data(checkpoint, "data"), noise(checkpoint, "noise");
   if (particles.particles.size() < kFewestParticles) return report;
-  const std::vector<bool> second = split(particles, options.seed);
+  const std::vector<bool> second = second_half(particles, options.seed);
   report.data = half_maps(particles, second, options, progress, data, engine);
   if (progress.cancelled()) return report;
   report.noise =
