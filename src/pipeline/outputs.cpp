@@ -9,38 +9,57 @@
 #include "polar/results/vtkhdf.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
+#include "smlm/number_text.hpp"
 
 namespace polar {
 
 namespace {
 using smlm::LocalisationTable;
+using Notes = std::vector<std::string>;
 
-void vtkhdf(const std::string& folder, const LocalisationTable& table, const RenderOptions& options) {
-  write_points_vtkhdf(folder + "aligned.hdf", table);
-  write_volume_vtkhdf(folder + "template.hdf", render(table, options));
+Volume drawn(const LocalisationTable& table, const RenderOptions& options, Notes& notes) {
+  Volume volume = render(table, options);
+  if (volume.voxel_nm > volume.wished_voxel_nm) {
+    notes.push_back("voxels are " + smlm::number_text(volume.voxel_nm) + " nm instead of " +
+                    smlm::number_text(volume.wished_voxel_nm) + " nm: no axis gets more than " +
+                    std::to_string(options.most_voxels_per_axis));
+  }
+  return volume;
 }
 
-void csv(const std::string& folder, const LocalisationTable& table, const RenderOptions&) {
+void vtkhdf(const std::string& folder, const LocalisationTable& table, const RenderOptions& options, Notes& notes) {
+  write_points_vtkhdf(folder + "aligned.hdf", table);
+  write_volume_vtkhdf(folder + "template.hdf", drawn(table, options, notes));
+}
+
+void csv(const std::string& folder, const LocalisationTable& table, const RenderOptions&, Notes&) {
   smlm::write_file_atomically(folder + "aligned.csv", format_table_csv(table));
 }
 
-void png(const std::string& folder, const LocalisationTable& table, const RenderOptions& options) {
-  write_preview_png(folder + "preview.png", render(table, options));
+void png(const std::string& folder, const LocalisationTable& table, const RenderOptions& options, Notes& notes) {
+  write_preview_png(folder + "preview.png", drawn(table, options, notes));
 }
 
-void tiff(const std::string& folder, const LocalisationTable& table, const RenderOptions& options) {
-  write_imagej_tiff(folder + "template.tif", render(table, options));
+void tiff(const std::string& folder, const LocalisationTable& table, const RenderOptions& options, Notes& notes) {
+  write_imagej_tiff(folder + "template.tif", drawn(table, options, notes));
 }
 
-void ply(const std::string& folder, const LocalisationTable& table, const RenderOptions&) {
+void ply(const std::string& folder, const LocalisationTable& table, const RenderOptions&, Notes&) {
   write_ply(folder + "aligned.ply", table);
 }
 
-void picasso(const std::string& folder, const LocalisationTable& table, const RenderOptions&) {
+void picasso(const std::string& folder, const LocalisationTable& table, const RenderOptions&, Notes& notes) {
   write_picasso(folder + "aligned.hdf5", table, picasso_shift_nm(table));
+  const std::vector<std::int32_t> groups = picasso_groups(table.particle_names);
+  std::size_t renamed = 0;
+  for (std::size_t i = 0; i < groups.size(); ++i) renamed += std::to_string(groups[i]) != table.particle_names[i];
+  if (renamed > 0) {
+    notes.push_back("Picasso's groups are whole numbers: " + std::to_string(renamed) + " of " +
+                    std::to_string(groups.size()) + " particles got one, which aligned_particles.csv lists");
+  }
 }
 
-void thunderstorm(const std::string& folder, const LocalisationTable& table, const RenderOptions&) {
+void thunderstorm(const std::string& folder, const LocalisationTable& table, const RenderOptions&, Notes&) {
   smlm::write_file_atomically(folder + "aligned_thunderstorm.csv", format_thunderstorm_csv(table));
 }
 }  // namespace
@@ -52,7 +71,7 @@ const std::vector<OutputFormat>& output_formats() {
       {"png", {"preview.png"}, png},
       {"tiff", {"template.tif"}, tiff},
       {"ply", {"aligned.ply"}, ply},
-      {"picasso", {"aligned.hdf5", "aligned.yaml"}, picasso},
+      {"picasso", {"aligned.hdf5", "aligned.yaml", "aligned_particles.csv"}, picasso},
       {"thunderstorm", {"aligned_thunderstorm.csv"}, thunderstorm}};
   return formats;
 }
@@ -71,10 +90,11 @@ std::vector<std::string> result_files() {
 }
 
 std::vector<std::string> write_format(const std::string& format, const std::string& directory,
-                                      const LocalisationTable& superparticle, const RenderOptions& options) {
+                                      const LocalisationTable& superparticle, const RenderOptions& options,
+                                      std::vector<std::string>& notes) {
   for (const OutputFormat& known : output_formats()) {
     if (known.name != format) continue;
-    known.write(directory + "/", superparticle, options);
+    known.write(directory + "/", superparticle, options, notes);
     return known.files;
   }
   throw smlm::Error(smlm::Fault::usage, "format", "'" + format + "' is not known",

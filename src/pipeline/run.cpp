@@ -84,12 +84,7 @@ smlm::ParticleSet read_particles(const RunConfig& config, Progress& progress) {
   for (const smlm::Rejection& r : set.table.rejected)
     progress.note("warning: " + std::to_string(r.rows) + " rows left out: " + r.reason + " (first: row " +
                   std::to_string(r.first_row) + ")");
-  if (set.particles.size() < 2)
-    throw smlm::Error(
-        smlm::Fault::input, config.files.front(),
-        std::to_string(set.particles.size()) + " particle" + (set.particles.size() == 1 ? "" : "s"),
-        "at least two are needed; which column names the particle (input.columns.particle, or "
-        "input.particles: one_per_file)?");
+  if (const auto obstacle = smlm::obstacle_to_registration(set.table)) throw *obstacle;
   return set;
 }
 
@@ -255,7 +250,7 @@ Results compute(const RunConfig& config, const std::string& hash, Progress& prog
 }
 
 std::vector<std::string> write(const Results& r, const RunConfig& config,
-                               const pipeline::OutputDirectory& directory) {
+                               const pipeline::OutputDirectory& directory, Progress& progress) {
   // Without its summary the directory is not complete: it goes first and comes back last.
   std::filesystem::remove(directory.file(kSummary));
   const smlm::LocalisationTable aligned = superparticle(r);
@@ -272,8 +267,10 @@ std::vector<std::string> write(const Results& r, const RunConfig& config,
       written.emplace_back("results.h5");
       continue;
     }
-    for (const std::string& name : write_format(format, config.output.directory, aligned, render))
+    std::vector<std::string> notes;
+    for (const std::string& name : write_format(format, config.output.directory, aligned, render, notes))
       written.push_back(name);
+    for (const std::string& note : notes) progress.note("warning: " + note);
   }
   return written;
 }
@@ -300,7 +297,7 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
     throw smlm::Error(smlm::Fault::numerical, config.files.front(), "no particle could be registered",
                       reasons.empty() ? "" : "most were rejected because: " + reasons.front().second);
   }
-  const std::vector<std::string> written = write(r, config, directory);
+  const std::vector<std::string> written = write(r, config, directory, progress);
   const double seconds = watch.seconds();
   const std::vector<Stranger> unlike = strangers(pose_rows(r));
   const std::vector<std::string> lines = describe(r, unlike, config.output.directory, seconds);

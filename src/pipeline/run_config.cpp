@@ -26,6 +26,7 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("pixel_size_nm", o.pixel_size_nm);
     s.field("unit", o.unit);
     s.field("sigma_kind", o.sigma_kind);
+    s.field("planar", o.planar);
     s.field("lpz_unit", o.lpz_unit);
     s.field("particles", o.particles);
     s.section("pick", [&](auto& pick) {
@@ -124,7 +125,7 @@ RunConfig load_run_config(const std::string& path, const std::vector<std::string
     config.read.pick.centres = pipeline::resolve_path(config.read.pick.centres, folder);
   if (!config.registration.weights.empty())
     config.registration.weights = pipeline::resolve_path(config.registration.weights, folder);
-  config.files = pipeline::expand_files(config.files, folder);
+  config.files = pipeline::expand_files(config.files, folder, &config.patterns);
   config.output.directory = pipeline::resolve_path(config.output.directory, folder);
   return config;
 }

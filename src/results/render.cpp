@@ -113,6 +113,7 @@ Volume frame(const smlm::LocalisationTable& table, const RenderOptions& o) {
     longest = std::max(longest, high[axis] - low[axis]);
   }
   const double wished = o.voxel_nm > 0 ? o.voxel_nm : median_sigma_nm(table) / 2;
+  v.wished_voxel_nm = wished;
   v.voxel_nm = std::max({wished, longest / static_cast<double>(o.most_voxels_per_axis), kSmallestVoxel_nm});
   for (std::size_t axis = 0; axis < 3; ++axis) {
     v.size[axis] =

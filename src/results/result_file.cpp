@@ -303,6 +303,7 @@ ResultRecord read_result_file(const std::string& path) {
   record.program = one_string(file, "/run/program");
   record.configuration = one_string(file, "/run/configuration");
   record.input_hash = one_string(file, "/run/input_hash");
+  record.warnings = file.read_strings("/run/warnings");
   return record;
 }
 

@@ -14,7 +14,7 @@ struct OutputFormat {
   std::string name;                // in output.formats and of `polar export --to`
   std::vector<std::string> files;  // that it writes
   void (*write)(const std::string& folder, const smlm::LocalisationTable& superparticle,
-                const RenderOptions& render);  // folder ends in a slash
+                const RenderOptions& render, std::vector<std::string>& notes);  // folder ends in a slash
 };
 
 const std::vector<OutputFormat>& output_formats();
@@ -25,9 +25,10 @@ std::vector<std::string> export_formats();
 /// Every name in a result directory that a run may have written.
 std::vector<std::string> result_files();
 
-/// Writes the files of one of export_formats() into `directory`; returns their names. Throws smlm::Error.
+/// Writes the files of one of export_formats() into `directory`; returns their names, and adds to `notes` what the
+/// format could not take as it is. Throws smlm::Error.
 std::vector<std::string> write_format(const std::string& format, const std::string& directory,
                                       const smlm::LocalisationTable& superparticle,
-                                      const RenderOptions& render);
+                                      const RenderOptions& render, std::vector<std::string>& notes);
 
 }  // namespace polar

@@ -21,8 +21,16 @@ struct OutputOptions {
   std::string resolution = "none";
 };
 
+/// A pattern among input.files.
+struct MatchedPattern {
+  std::string pattern;  // as written
+  std::size_t files = 0;
+  std::vector<std::string> but_for_case;  // files that would match if case did not matter
+};
+
 struct RunConfig {
   std::vector<std::string> files;  // absolute, expanded
+  std::vector<MatchedPattern> patterns;
   smlm::ReadOptions read;
   RegistrationOptions registration;
   OutputOptions output;

@@ -14,6 +14,7 @@ struct ResultRecord {
   TemplateSites sites;
   RenderOptions render;  // its calibration
   std::string program, configuration, input_hash;
+  std::vector<std::string> warnings;  // of the run: what it assumed
 };
 
 /// Writes the record whole or not at all.
