@@ -1,5 +1,3 @@
-#include "polar/report/page.hpp"
-
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -7,6 +5,7 @@
 #include "command.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "polar/report/batch_page.hpp"
+#include "polar/report/page.hpp"
 #include "record_path.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/isolation.hpp"
@@ -44,7 +43,8 @@ int run(const Arguments& a) {
 void add_report(CLI::App& app, Action& action) {
   auto a = std::make_shared<Arguments>();
   CLI::App* sub = app.add_subcommand("report", "Write the page of a result or of a batch anew");
-  sub->add_option("result", a->result, "result directory, results.h5, or the directory of a batch")->required();
+  sub->add_option("result", a->result, "result directory, results.h5, or the directory of a batch")
+      ->required();
   sub->add_option("--output", a->output, "file; default: report.html beside what it is made from");
   sub->callback([a, &action] { action = [a] { return run(*a); }; });
 }

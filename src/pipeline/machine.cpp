@@ -26,7 +26,8 @@ std::string memory() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), bytes = ::sysconf(_SC_PAGE_SIZE);
   if (pages <= 0 || bytes <= 0) return {};
   char text[48];
-  std::snprintf(text, sizeof text, ", %.1f GB", 1e-9 * static_cast<double>(pages) * static_cast<double>(bytes));
+  std::snprintf(text, sizeof text, ", %.1f GB",
+                1e-9 * static_cast<double>(pages) * static_cast<double>(bytes));
   return text;
 }
 }  // namespace

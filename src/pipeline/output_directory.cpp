@@ -22,8 +22,8 @@ constexpr const char* kLock = ".polar.lock";
   throw smlm::Error(smlm::Fault::io, path, what, remedy);
 }
 
-// What a run in which no particle has a pose leaves is its page, the record and the poses that go with it, without a
-// summary: nothing to be kept from the same command given again.
+// What a run in which no particle has a pose leaves is its page, the record and the poses that go with it,
+// without a summary: nothing to be kept from the same command given again.
 bool holds_something(const std::string& path) {
   bool something = false, page = false;
   for (const auto& entry : std::filesystem::directory_iterator(path)) {

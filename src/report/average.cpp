@@ -13,9 +13,9 @@ namespace {
 constexpr std::size_t kMostVoxels = 144, kMostPlanarVoxels = 480;
 
 // The pictures of one plane: every channel by its own brightest spot.
-std::string picture(const std::vector<Volume>& volumes, const std::vector<Channel>& channels, const Plane& plane,
-                    std::size_t begin, std::size_t end, const std::vector<double>& brightest,
-                    const std::string& label) {
+std::string picture(const std::vector<Volume>& volumes, const std::vector<Channel>& channels,
+                    const Plane& plane, std::size_t begin, std::size_t end,
+                    const std::vector<double>& brightest, const std::string& label) {
   std::vector<Raster> rasters;
   std::vector<Tint> tints;
   std::vector<std::pair<std::string, std::string>> legend;
@@ -31,14 +31,15 @@ std::string picture(const std::vector<Volume>& volumes, const std::vector<Channe
                      plane.name, label, legend);
 }
 
-std::vector<double> brightest_of(const std::vector<Volume>& volumes, const std::vector<Plane>& planes, bool slices) {
+std::vector<double> brightest_of(const std::vector<Volume>& volumes, const std::vector<Plane>& planes,
+                                 bool slices) {
   std::vector<double> brightest(volumes.size(), 0.0);
   for (std::size_t c = 0; c < volumes.size(); ++c)
     for (const Plane& p : planes) {
       const std::size_t depth = volumes[c].size[p.through];
-      brightest[c] = std::max(brightest[c], (slices ? summed(volumes[c], p, depth / 2, depth / 2 + 1)
-                                                    : projected(volumes[c], p))
-                                                .largest());
+      brightest[c] = std::max(
+          brightest[c],
+          (slices ? summed(volumes[c], p, depth / 2, depth / 2 + 1) : projected(volumes[c], p)).largest());
     }
   return brightest;
 }
@@ -47,7 +48,8 @@ std::vector<double> brightest_of(const std::vector<Volume>& volumes, const std::
 Section average_section(const Subject& subject) {
   Section s{"average", "The average", {}, {}, {}};
   if (subject.points.size() == 0) {
-    s.figures.push_back(absent("projection-xy", "Projections", "No particle has a pose, so there is no average."));
+    s.figures.push_back(
+        absent("projection-xy", "Projections", "No particle has a pose, so there is no average."));
     return s;
   }
   s.notes.push_back(subject.frame.sentence);
@@ -56,16 +58,19 @@ Section average_section(const Subject& subject) {
   const std::vector<Channel> channels = channels_of(subject.points);
   const std::vector<Volume> volumes = render_channels(subject.points, channels, options);
   const Volume& box = volumes.front();
-  s.notes.push_back("Every localisation is a Gaussian of its own uncertainty, as the run found it to be; voxels of " +
-                    digits(box.voxel_nm) + " nm" +
-                    (channels.size() > 1 ? "; one colour a channel. Brightness is on one scale a channel for all projections, and on "
-                                           "another for all slices."
-                                         : "; one scale of brightness for all projections, another for all slices."));
-  const std::vector<Plane> planes = box.planar ? std::vector<Plane>{kTopView}
-                                               : std::vector<Plane>{kTopView, kFrontView, kSideView};
+  s.notes.push_back(
+      "Every localisation is a Gaussian of its own uncertainty, as the run found it to be; voxels of " +
+      digits(box.voxel_nm) + " nm" +
+      (channels.size() > 1
+           ? "; one colour a channel. Brightness is on one scale a channel for all projections, and on "
+             "another for all slices."
+           : "; one scale of brightness for all projections, another for all slices."));
+  const std::vector<Plane> planes =
+      box.planar ? std::vector<Plane>{kTopView} : std::vector<Plane>{kTopView, kFrontView, kSideView};
   const std::vector<double> whole = brightest_of(volumes, planes, false);
   for (const Plane& p : planes)
-    s.figures.push_back({std::string("projection-") + p.name, box.planar ? "Density" : std::string("Projection, ") + p.name,
+    s.figures.push_back({std::string("projection-") + p.name,
+                         box.planar ? "Density" : std::string("Projection, ") + p.name,
                          picture(volumes, channels, p, 0, box.size[p.through], whole,
                                  std::string("sum of the average on the plane ") + p.name),
                          {}});
@@ -73,7 +78,8 @@ Section average_section(const Subject& subject) {
   const std::vector<double> in_slice = brightest_of(volumes, planes, true);
   for (const Plane& p : planes) {
     const std::size_t middle = box.size[p.through] / 2;
-    s.figures.push_back({std::string("slice-") + p.name, std::string("Slice through the middle, ") + p.name,
+    s.figures.push_back({std::string("slice-") + p.name,
+                         std::string("Slice through the middle, ") + p.name,
                          picture(volumes, channels, p, middle, middle + 1, in_slice,
                                  std::string("slice through the middle of the average, plane ") + p.name),
                          {}});

@@ -11,7 +11,7 @@ namespace polar::report {
 struct Bar {
   std::string name;
   double value = 0;
-  std::string shown;                                  // the value in words
+  std::string shown;                                   // the value in words
   double low = PoseRow::kNone, high = PoseRow::kNone;  // interval; none where NaN
   std::string style = "c1";
 };

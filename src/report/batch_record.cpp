@@ -1,3 +1,4 @@
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -37,6 +38,22 @@ std::string thumbnail(const std::string& results_h5) {
   }
 }
 
+// A folder's name within a link.
+std::string url_part(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) || c == '-' || c == '_' || c == '.' || c == '~') {
+      out += c;
+      continue;
+    }
+    out += '%';
+    out += "0123456789ABCDEF"[byte >> 4];
+    out += "0123456789ABCDEF"[byte & 15];
+  }
+  return out;
+}
+
 BatchDataset dataset_of(const json& row, const std::string& folder) {
   BatchDataset d;
   d.name = text(row, "name"), d.condition = text(row, "condition");
@@ -45,7 +62,7 @@ BatchDataset dataset_of(const json& row, const std::string& folder) {
     if (value.is_number() && key != "exit_code") d.number[key] = value.get<double>();
   std::error_code unseen;  // what cannot be seen is not there
   if (std::filesystem::is_regular_file(folder + "/" + d.name + "/report.html", unseen))
-    d.link = d.name + "/report.html";
+    d.link = "./" + url_part(d.name) + "/report.html";
   const std::string record = folder + "/" + d.name + "/results.h5";
   if (std::filesystem::is_regular_file(record, unseen)) d.thumbnail_png = thumbnail(record);
   return d;
@@ -85,7 +102,8 @@ BatchRecord read_batch_record(const std::string& folder) {
   std::ifstream in(path);
   const json batch = json::parse(in, nullptr, false);
   if (!batch.is_object() || !batch.contains("datasets") || !batch["datasets"].is_array())
-    throw smlm::Error(smlm::Fault::input, path, "not the state of a batch", "give the folder of a polar batch");
+    throw smlm::Error(smlm::Fault::input, path, "not the state of a batch",
+                      "give the folder of a polar batch");
   BatchRecord record;
   record.program = text(batch, "program");
   for (const json& row : batch["datasets"])

@@ -37,14 +37,14 @@ std::vector<Channel> channels_of(const smlm::LocalisationTable& table) {
     const std::size_t c = channels.size();
     const auto label = static_cast<std::size_t>(value);
     const bool named = !column->labels.empty() && value >= 0 && label < column->labels.size();
-    channels.push_back({named ? column->labels[label] : "channel " + digits(value, 6), "t" + std::to_string(c),
-                        kTints[c], std::move(rows)});
+    channels.push_back({named ? column->labels[label] : "channel " + digits(value, 6),
+                        "t" + std::to_string(c), kTints[c], std::move(rows)});
   }
   return channels;
 }
 
-std::vector<Volume> render_channels(const smlm::LocalisationTable& table, const std::vector<Channel>& channels,
-                                    const RenderOptions& options) {
+std::vector<Volume> render_channels(const smlm::LocalisationTable& table,
+                                    const std::vector<Channel>& channels, const RenderOptions& options) {
   const Volume whole = render(table, options);
   if (channels.size() == 1) return {whole};
   std::vector<Volume> volumes;

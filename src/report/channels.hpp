@@ -20,7 +20,7 @@ struct Channel {
 std::vector<Channel> channels_of(const smlm::LocalisationTable& table);
 
 /// One volume a channel, all of one grid.
-std::vector<Volume> render_channels(const smlm::LocalisationTable& table, const std::vector<Channel>& channels,
-                                    const RenderOptions& options);
+std::vector<Volume> render_channels(const smlm::LocalisationTable& table,
+                                    const std::vector<Channel>& channels, const RenderOptions& options);
 
 }  // namespace polar::report

@@ -19,8 +19,9 @@ std::vector<std::array<double, 4>> contour(const Raster& r, double level) {
         std::array<double, 2> at{};
         for (std::size_t a = 0; a < 2; ++a)
           at[a] = r.origin_nm[a] +
-                  r.pixel_nm * (static_cast<double>(a == 0 ? x : y) + static_cast<double>(corner[k][a]) +
-                                share * (static_cast<double>(corner[next][a]) - static_cast<double>(corner[k][a])));
+                  r.pixel_nm *
+                      (static_cast<double>(a == 0 ? x : y) + static_cast<double>(corner[k][a]) +
+                       share * (static_cast<double>(corner[next][a]) - static_cast<double>(corner[k][a])));
         crossing.push_back(at);
       }
       // Four crossings are a saddle; either way of joining them outlines as well.

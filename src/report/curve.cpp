@@ -30,11 +30,12 @@ ResolutionCurve curve_of_common_poses(const Subject& subject) {
   for (const std::size_t divisor : {8u, 4u, 2u, 1u}) {
     const std::size_t n = accepted.size() / divisor;
     if (n < kFewest) continue;
-    std::vector<bool> half[2] = {std::vector<bool>(record.poses.size()), std::vector<bool>(record.poses.size())};
+    std::vector<bool> half[2] = {std::vector<bool>(record.poses.size()),
+                                 std::vector<bool>(record.poses.size())};
     for (std::size_t k = 0; k < n; ++k) half[k % 2][accepted[order[k]]] = true;
     const RenderOptions& drawing = record.result.render;
-    const DrawnShells drawn =
-        shells_between(of_particles(subject.points, half[0]), drawing, of_particles(subject.points, half[1]), drawing, most);
+    const DrawnShells drawn = shells_between(of_particles(subject.points, half[0]), drawing,
+                                             of_particles(subject.points, half[1]), drawing, most);
     curve.particles.push_back(static_cast<double>(n));
     curve.resolution_nm.push_back(shell_resolution(drawn.shells).period_nm);
   }

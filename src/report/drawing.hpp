@@ -1,5 +1,5 @@
-// SVG: marks with a style (a class of style.css, so that they follow the page's light and dark) in a view box that
-// scales with the page.
+// SVG: marks with a style (a class of style.css, so that they follow the page's light and dark) in a view box
+// that scales with the page.
 #pragma once
 
 #include <string>

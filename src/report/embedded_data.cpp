@@ -42,7 +42,9 @@ std::string script_json(const nlohmann::json& value) {
 
 std::string particle_table_json(const RunRecord& record, std::size_t& left_out) {
   nlohmann::json heads = nlohmann::json::array(), rows = nlohmann::json::array();
-  const auto head = [&](const char* name, bool is_number) { heads.push_back({{"name", name}, {"number", is_number}}); };
+  const auto head = [&](const char* name, bool is_number) {
+    heads.push_back({{"name", name}, {"number", is_number}});
+  };
   head("line", true), head("particle", false), head("localisations", true), head("used", true);
   head("accepted", false), head("log likelihood", true), head("margin", true), head("rotation [deg]", true);
   head("place [nm]", true), head("visibility", true), head("outliers", true), head("reason", false);
@@ -50,9 +52,10 @@ std::string particle_table_json(const RunRecord& record, std::size_t& left_out) 
   left_out = record.poses.size() - n;
   for (std::size_t i = 0; i < n; ++i) {
     const PoseRow& p = record.poses[i];
-    rows.push_back({i + 1, p.particle, p.n_localisations, p.n_used, p.accepted ? "yes" : "no", number(p.log_likelihood),
-                    number(p.margin), number(p.rotation_std_deg), number(p.translation_std_nm),
-                    number(record.fit[i].visibility), number(record.fit[i].outlier_fraction), p.reason});
+    rows.push_back({i + 1, p.particle, p.n_localisations, p.n_used, p.accepted ? "yes" : "no",
+                    number(p.log_likelihood), number(p.margin), number(p.rotation_std_deg),
+                    number(p.translation_std_nm), number(record.fit[i].visibility),
+                    number(record.fit[i].outlier_fraction), p.reason});
   }
   return script_json({{"heads", heads}, {"rows", rows}});
 }
@@ -78,7 +81,11 @@ std::string turntable_json(const Subject& subject) {
   }
   nlohmann::json tints = nlohmann::json::array();
   for (const Channel& c : channels) tints.push_back(c.tint);
-  out = {{"n", n}, {"half_nm", half_nm}, {"of", t.size()}, {"points", base64(points)}, {"channel", base64(channel)},
+  out = {{"n", n},
+         {"half_nm", half_nm},
+         {"of", t.size()},
+         {"points", base64(points)},
+         {"channel", base64(channel)},
          {"tints", channels.size() > 1 ? tints : nlohmann::json::array()}};
   return script_json(out);
 }

@@ -27,8 +27,8 @@ bool has_axis(const SymmetryRecord& s) {
   return s.group.size() > 1 && (s.group[0] == 'C' || s.group[0] == 'D') && s.group != "C1";
 }
 
-// Rows: the drawn axes. Each points towards the template's axis that it is nearest to, so that a template that
-// lies along its axes already is drawn as it is.
+// Rows: the drawn axes. Each points towards the template's axis that it is nearest to, so that a template
+// that lies along its axes already is drawn as it is.
 Eigen::Matrix3d turned(const Eigen::Vector3d& z, const Eigen::Vector3d& x_wish) {
   Eigen::Vector3d up = z.normalized();
   if (up.minCoeff() < -up.maxCoeff()) up = -up;
@@ -82,19 +82,17 @@ DrawingFrame drawing_frame(const RunRecord& record) {
   // About an axis of revolution every x is as good: the template's own, as near as may be.
   Eigen::Index least = 0;
   z.cwiseAbs().minCoeff(&least);
-  const Eigen::Vector3d x_wish =
-      frame.axial ? Eigen::Vector3d(Eigen::Vector3d::Unit(least)) : Eigen::Vector3d(axes.eigenvectors().col(shortest ? 2 : 1));
+  const Eigen::Vector3d x_wish = frame.axial ? Eigen::Vector3d(Eigen::Vector3d::Unit(least))
+                                             : Eigen::Vector3d(axes.eigenvectors().col(shortest ? 2 : 1));
   const bool axial = frame.axial;
   frame = about(turned(z, x_wish), middle);
   frame.axial = axial;
-  frame.sentence = std::string("Drawn along its principal axes, z the ") + (shortest ? "shortest" : "longest") +
-                   "; the files keep the template's own frame.";
+  frame.sentence = std::string("Drawn along its principal axes, z the ") +
+                   (shortest ? "shortest" : "longest") + "; the files keep the template's own frame.";
   return frame;
 }
 
 Subject::Subject(const RunRecord& r)
-    : record(r),
-      frame(drawing_frame(r)),
-      points(moved(r.result.superparticle, frame.drawn_from_template)) {}
+    : record(r), frame(drawing_frame(r)), points(moved(r.result.superparticle, frame.drawn_from_template)) {}
 
 }  // namespace polar::report

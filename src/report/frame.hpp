@@ -14,8 +14,8 @@ struct DrawingFrame {
   std::string sentence;      // how it was chosen
 };
 
-/// With a symmetry axis: that axis along z. Else, in space, the principal axes of the superparticle: z the one
-/// whose extent differs most from the other two. Planar: the template's own frame about its middle.
+/// With a symmetry axis: that axis along z. Else, in space, the principal axes of the superparticle: z the
+/// one whose extent differs most from the other two. Planar: the template's own frame about its middle.
 DrawingFrame drawing_frame(const RunRecord& record);
 
 }  // namespace polar::report

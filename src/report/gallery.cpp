@@ -1,4 +1,5 @@
-// Single particles over the outline of the average: the best, those in the middle, the worst, and rejected ones.
+// Single particles over the outline of the average: the best, those in the middle, the worst, and rejected
+// ones.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +20,7 @@ constexpr std::size_t kEach = 4, kMostRejected = 8, kMostDots = 500;
 constexpr double kWhole = 300;     // units: one view, or two side by side, so that letters are of one size
 constexpr double kOutline = 0.18;  // of the brightest spot
 constexpr std::size_t kOutlineVoxels = 48;
-constexpr double kHeld = 0.95;     // of a rejected particle's localisations that its tile holds
+constexpr double kHeld = 0.95;  // of a rejected particle's localisations that its tile holds
 
 // What all tiles share: a scale, and the outlines of the average from the top and from the front.
 struct Frame {
@@ -60,8 +61,7 @@ std::string tile_svg(const std::vector<Point>& points, const Frame& f, const std
   Path dots;
   const std::size_t stride = points.size() / kMostDots + 1;
   for (std::size_t i = 0; i < points.size(); i += stride)
-    for (int v = 0; v < f.views; ++v)
-      dots.dot(f.across(points[i][0], v), f.up(points[i][v == 0 ? 1 : 2]));
+    for (int v = 0; v < f.views; ++v) dots.dot(f.across(points[i][0], v), f.up(points[i][v == 0 ? 1 : 2]));
   drawing.path("dots small c1", dots);
   for (int v = 0; v < f.views; ++v) drawing.text("tick", f.edge() * v + 4, 12, v == 0 ? "xy" : "xz");
   return drawing.svg(label);
@@ -107,6 +107,9 @@ void add_accepted(const Subject& subject, Section& s, double& half_nm) {
     s.figures.push_back(absent("gallery-accepted", "Accepted particles", "No particle was accepted."));
     return;
   }
+  s.notes.push_back(
+      "By log likelihood, each aligned, its localisations over the outline of the average (at " +
+      percent(kOutline) + " of its brightest spot).");
   const Frame frame = frame_of(subject);
   half_nm = frame.half_nm;
   const auto points = by_particle(subject.points.particle, subject.points.position_nm);
@@ -119,10 +122,11 @@ void add_accepted(const Subject& subject, Section& s, double& half_nm) {
     const PoseRow& p = subject.record.poses[order[rank]];
     const auto own = points.find(static_cast<std::int64_t>(order[rank]));
     if (own == points.end()) continue;
-    s.figures.push_back({"gallery-" + std::to_string(rank + 1), kind + ": " + p.particle,
-                         tile_svg(own->second, frame, "particle " + p.particle + " over the outline of the average"),
-                         "Rank " + std::to_string(rank + 1) + " of " + std::to_string(n) + ", log likelihood " +
-                             digits(p.log_likelihood) + ", " + counted(own->second.size(), "localisation") + "."});
+    s.figures.push_back(
+        {"gallery-" + std::to_string(rank + 1), kind + ": " + p.particle,
+         tile_svg(own->second, frame, "particle " + p.particle + " over the outline of the average"),
+         "Rank " + std::to_string(rank + 1) + " of " + std::to_string(n) + ", log likelihood " +
+             digits(p.log_likelihood) + ", " + counted(own->second.size(), "localisation") + "."});
   }
 }
 
@@ -142,7 +146,8 @@ void add_rejected(const Subject& subject, Section& s, double half_nm) {
   }
   // Each reason in turn, so that a frequent one does not hide the others.
   std::map<std::string, std::vector<std::size_t>> of;
-  for (const auto& [i, own] : points) of[record.poses[static_cast<std::size_t>(i)].reason].push_back(static_cast<std::size_t>(i));
+  for (const auto& [i, own] : points)
+    of[record.poses[static_cast<std::size_t>(i)].reason].push_back(static_cast<std::size_t>(i));
   std::vector<std::size_t> shown;
   for (std::size_t turn = 0; shown.size() < kMostRejected && turn < kMostRejected; ++turn)
     for (const auto& [reason, members] : of)
@@ -152,15 +157,13 @@ void add_rejected(const Subject& subject, Section& s, double half_nm) {
     s.figures.push_back({"rejected-" + std::to_string(i + 1), "Rejected: " + p.particle,
                          rejected_svg(points.at(static_cast<std::int64_t>(i)), subject.points.planar, half_nm,
                                       "rejected particle " + p.particle + " as imaged"),
-                         "As imaged, it has no pose. " + p.reason + "."});
+                         "As imaged, since it has no pose: " + p.reason + "."});
   }
 }
 }  // namespace
 
 Section gallery_section(const Subject& subject) {
   Section s{"gallery", "Particles", {}, {}, {}, true};
-  s.notes.push_back("By log likelihood, each aligned, its localisations over the outline of the average (at " +
-                    percent(kOutline) + " of its brightest spot).");
   double half_nm = 1;
   add_accepted(subject, s, half_nm);
   add_rejected(subject, s, half_nm);

@@ -9,7 +9,7 @@ namespace polar::report {
 struct Histogram {
   double low = 0, width = 1;
   std::vector<std::size_t> count;
-  std::size_t total = 0;         // finite values
+  std::size_t total = 0;             // finite values
   std::size_t below = 0, above = 0;  // of them, outside: counted in the first and the last bin
 
   double edge(std::size_t bin) const { return low + width * static_cast<double>(bin); }

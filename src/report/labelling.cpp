@@ -45,7 +45,8 @@ void add_units(const Subject& subject, Section& s) {
   std::vector<Bar> bars;
   std::vector<double> labelled, blinks;
   for (const auto& own : counts.of) {
-    labelled.push_back(static_cast<double>(std::count_if(own.begin(), own.end(), [](std::size_t c) { return c > 0; })));
+    labelled.push_back(
+        static_cast<double>(std::count_if(own.begin(), own.end(), [](std::size_t c) { return c > 0; })));
     for (const std::size_t c : own)
       if (c > 0) blinks.push_back(static_cast<double>(c));
   }
@@ -55,20 +56,24 @@ void add_units(const Subject& subject, Section& s) {
     for (const auto& own : counts.of) share += own[u] > 0 ? 1 / n : 0;
     total += share / static_cast<double>(units);
     const Interval i = wilson(share, n);
-    bars.push_back({"unit " + std::to_string(u + 1), share, percent(share, 1) + " (" + percent(i.low) + " to " + percent(i.high) + ")",
-                    i.low, i.high});
+    bars.push_back({"unit " + std::to_string(u + 1), share,
+                    percent(share, 1) + " (" + percent(i.low) + " to " + percent(i.high) + ")", i.low,
+                    i.high});
   }
-  s.notes.push_back(std::to_string(units) + " symmetric units; in the mean " + percent(total, 1) +
-                    " of them hold a localisation in a particle. A localisation belongs to the nearest unit.");
+  s.notes.push_back(
+      std::to_string(units) + " symmetric units; in the mean " + percent(total, 1) +
+      " of them hold a localisation in a particle. A localisation belongs to the nearest unit.");
   s.figures.push_back({"occupancy", "Units that hold a localisation",
                        bars_svg(bars, "share of particles that show each unit"),
                        "Share of the accepted particles, with intervals of 95 % (Wilson)."});
-  s.figures.push_back({"units-a-particle", "Units a particle",
-                       histogram_svg(whole_number_histogram(labelled), "units that hold a localisation", "particles", "c1"),
-                       "Of " + std::to_string(units) + "."});
-  s.figures.push_back({"blinks", "Localisations a unit",
-                       histogram_svg(whole_number_histogram(blinks), "localisations of a unit that holds any", "units", "c1"),
-                       "Labels of a unit times their blinks."});
+  s.figures.push_back(
+      {"units-a-particle", "Units a particle",
+       histogram_svg(whole_number_histogram(labelled), "units that hold a localisation", "particles", "c1"),
+       "Of " + std::to_string(units) + "."});
+  s.figures.push_back(
+      {"blinks", "Localisations a unit",
+       histogram_svg(whole_number_histogram(blinks), "localisations of a unit that holds any", "units", "c1"),
+       "Labels of a unit times their blinks."});
 }
 }  // namespace
 
@@ -88,10 +93,11 @@ Section labelling_section(const Subject& subject) {
   if (symmetry && symmetry->unit_nm.cols() > 0 && symmetry->unit_nm.cols() <= kMostUnits && !counts.empty())
     add_units(subject, s);
   else
-    s.figures.push_back(absent("occupancy", "Units that hold a localisation",
-                               !symmetry ? "Which sites or units are labelled is counted on the units of a symmetry: "
-                                           "registration.symmetry: detect, or the group that you know."
-                                         : "The average has no symmetric units to count on (" + symmetry->group + ")."));
+    s.figures.push_back(
+        absent("occupancy", "Units that hold a localisation",
+               !symmetry ? "Which sites or units are labelled is counted on the units of a symmetry: "
+                           "registration.symmetry: detect, or the group that you know."
+                         : "The average has no symmetric units to count on (" + symmetry->group + ")."));
   if (counts.empty())
     s.figures.push_back(absent("localisations", "Localisations a particle", "No particle has a pose."));
   else

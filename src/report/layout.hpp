@@ -1,5 +1,5 @@
-// The page's templates (src/report/templates, embedded at build time) and the engine that fills them: Mustache,
-// which escapes every text that is not marked as markup.
+// The page's templates (src/report/templates, embedded at build time) and the engine that fills them:
+// Mustache, which escapes every text that is not marked as markup.
 #pragma once
 
 #include <kainjow/mustache.hpp>

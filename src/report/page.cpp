@@ -30,9 +30,9 @@ Data numbers_data(const RunRecord& record) {
 }
 
 std::vector<Section> sections_of(const Subject& s) {
-  return {average_section(s),   rings_section(s),         resolution_section(s), directions_section(s),
-          scores_section(s),    gallery_section(s),       labelling_section(s),  uncertainties_section(s),
-          search_section(s),    again_section(s)};
+  return {average_section(s), rings_section(s),   resolution_section(s), directions_section(s),
+          scores_section(s),  gallery_section(s), labelling_section(s),  uncertainties_section(s),
+          search_section(s),  again_section(s)};
 }
 }  // namespace
 
@@ -50,8 +50,9 @@ std::string report_page(const RunRecord& record, const std::string& name) {
   page.set("configuration", utf8(record.result.configuration));
   page.set("turntable", turntable_json(subject));
   page.set("can_turn", subject.points.size() > 0 && !subject.points.planar);
-  page.set("cannot_turn", subject.points.planar ? "The data are planar: there is nothing to turn."
-                                                : "No particle has a pose, so there is no superparticle to turn.");
+  page.set("cannot_turn", subject.points.planar
+                              ? "The data are planar: there is nothing to turn."
+                              : "No particle has a pose, so there is no superparticle to turn.");
   std::size_t left_out = 0;
   page.set("particles", particle_table_json(record, left_out));
   page.set("left_out", left_out == 0 ? std::string()

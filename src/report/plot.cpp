@@ -91,15 +91,17 @@ void Plot::bars(const std::string& style, const Histogram& h) {
     if (h.count[b] == 0) continue;
     const double left = across(h.edge(b)), right = across(h.edge(b + 1)),
                  top = up(static_cast<double>(h.count[b]));
-    drawing_.rect("fill " + style, left, top, std::max(0.5, right - left - 0.6), up(0) - top,
-                  digits(h.edge(b), 4) + " to " + digits(h.edge(b + 1), 4) + ": " + std::to_string(h.count[b]));
+    drawing_.rect(
+        "fill " + style, left, top, std::max(0.5, right - left - 0.6), up(0) - top,
+        digits(h.edge(b), 4) + " to " + digits(h.edge(b + 1), 4) + ": " + std::to_string(h.count[b]));
   }
 }
 
 void Plot::vertical(const std::string& style, double x, const std::string& name) {
   drawing_.path(style, Path().move(across(x), kTop - 6).line(across(x), kHeight - kBottom));
   const bool right = across(x) > kWidth / 2;
-  drawing_.text("cut-name", across(x) + (right ? -4 : 4), kTop + 2, name, right ? Anchor::end : Anchor::start);
+  drawing_.text("cut-name", across(x) + (right ? -4 : 4), kTop + 2, name,
+                right ? Anchor::end : Anchor::start);
 }
 
 void Plot::horizontal(const std::string& style, double y, const std::string& name) {

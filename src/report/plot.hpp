@@ -1,5 +1,5 @@
-// A plot with two axes: lines, dots, bars, cut-offs. 360 units wide, so that its letters can be read where a page is
-// 400 pixels wide.
+// A plot with two axes: lines, dots, bars, cut-offs. 360 units wide, so that its letters can be read where a
+// page is 400 pixels wide.
 #pragma once
 
 #include <string>
@@ -50,6 +50,7 @@ class Plot {
 
 /// Bars of a histogram with axes and `cuts` (value, name).
 std::string histogram_svg(const Histogram& histogram, const std::string& x_label, const std::string& y_label,
-                          const std::string& style, const std::vector<std::pair<double, std::string>>& cuts = {});
+                          const std::string& style,
+                          const std::vector<std::pair<double, std::string>>& cuts = {});
 
 }  // namespace polar::report

@@ -43,7 +43,8 @@ std::string tinted_png(const std::vector<Raster>& rasters, const std::vector<Tin
                        const std::vector<double>& brightest);
 
 /// The picture with a scale bar and the names of its axes, and the legend of its colours.
-std::string picture_svg(const Raster& raster, const std::string& png, const char* axes, const std::string& label,
+std::string picture_svg(const Raster& raster, const std::string& png, const char* axes,
+                        const std::string& label,
                         const std::vector<std::pair<std::string, std::string>>& legend = {});
 
 }  // namespace polar::report

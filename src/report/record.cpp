@@ -58,7 +58,9 @@ void read_poses(const File& file, RunRecord& r) {
              likelihood = file.read<double>("/poses/log_likelihood"),
              margin = file.read<double>("/poses/margin");
   const auto outliers = numbers<double>(file, "/poses/outlier_fraction"),
-             visibility = numbers<double>(file, "/poses/visibility");
+             visibility = numbers<double>(file, "/poses/visibility"),
+             posterior_rotation = numbers<double>(file, "/poses/posterior_rotation_deg"),
+             posterior_translation = numbers<double>(file, "/poses/posterior_translation_nm");
   const std::size_t n = name.size();
   if (reason.size() != n || accepted.size() != n || total.size() != n || used.size() != n ||
       rotation.size() != 9 * n || translation.size() != 3 * n || covariance.size() != 36 * n ||
@@ -73,7 +75,8 @@ void read_poses(const File& file, RunRecord& r) {
       Pose pose;
       double rotation_variance = 0, translation_variance = 0;
       for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) pose.rotation(a, b) = rotation[9 * i + static_cast<std::size_t>(3 * a + b)];
+        for (int b = 0; b < 3; ++b)
+          pose.rotation(a, b) = rotation[9 * i + static_cast<std::size_t>(3 * a + b)];
         pose.translation[a] = translation[3 * i + static_cast<std::size_t>(a)];
         rotation_variance += covariance[36 * i + static_cast<std::size_t>(7 * a)];
         translation_variance += covariance[36 * i + static_cast<std::size_t>(7 * (a + 3))];
@@ -86,6 +89,8 @@ void read_poses(const File& file, RunRecord& r) {
       row.log_likelihood = likelihood[i], row.margin = margin[i];
       fit.outlier_fraction = at(outliers, i, PoseRow::kNone);
       fit.visibility = at(visibility, i, PoseRow::kNone);
+      fit.posterior_rotation_deg = at(posterior_rotation, i, PoseRow::kNone);
+      fit.posterior_translation_nm = at(posterior_translation, i, PoseRow::kNone);
     }
     r.poses.push_back(std::move(row));
     r.fit.push_back(fit);
@@ -176,12 +181,11 @@ void read_search(const File& file, RunRecord& r) {
              likelihood = numbers<double>(file, "/run/history/log_likelihood");
   const std::size_t rounds = std::max({moved.size(), escaped.size(), likelihood.size()});
   for (std::size_t i = 0; i < rounds; ++i)
-    r.history.push_back({at(moved, i, PoseRow::kNone), at(escaped, i, PoseRow::kNone),
-                         at(likelihood, i, PoseRow::kNone)});
+    r.history.push_back(
+        {at(moved, i, PoseRow::kNone), at(escaped, i, PoseRow::kNone), at(likelihood, i, PoseRow::kNone)});
   r.stage = texts(file, "/run/timings/stage");
   r.stage_seconds = numbers<double>(file, "/run/timings/seconds");
-  if (r.stage.size() != r.stage_seconds.size())
-    damaged(file, "/run/timings: columns of different lengths");
+  if (r.stage.size() != r.stage_seconds.size()) damaged(file, "/run/timings: columns of different lengths");
   r.rounds = attribute<std::int32_t>(file, "/run", "rounds", 0);
   r.converged = attribute<std::uint8_t>(file, "/run", "converged", 0) != 0;
   r.stopped_because = first(texts(file, "/run/stopped_because"));

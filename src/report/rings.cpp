@@ -1,12 +1,12 @@
-// Structures that wind about an axis, ring by ring: where along the axis localisations gather, and each such layer
-// from the top.
+// Structures that wind about an axis, ring by ring: where along the axis localisations gather, and each such
+// layer from the top.
 #include <algorithm>
 #include <cmath>
 
+#include "plot.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/core/median.hpp"
 #include "polar/results/results.hpp"
-#include "plot.hpp"
 #include "raster.hpp"
 #include "section.hpp"
 #include "text.hpp"
@@ -15,9 +15,9 @@ namespace polar::report {
 
 namespace {
 constexpr std::size_t kSamples = 160, kMostVoxels = 144;
-constexpr double kSmoothing = 1.0 / 40;    // of the extent: standard deviation of the profile's kernel
-constexpr double kLowestPeak = 0.25;       // of the highest
-constexpr double kDeepestSaddle = 0.75;    // of the lower peak: less deep, and two peaks are one layer
+constexpr double kSmoothing = 1.0 / 40;  // of the extent: standard deviation of the profile's kernel
+constexpr double kLowestPeak = 0.25;     // of the highest
+constexpr double kDeepestSaddle = 0.75;  // of the lower peak: less deep, and two peaks are one layer
 constexpr std::size_t kMostLayers = 6;
 constexpr double kLeftOut = 0.002;
 
@@ -96,9 +96,10 @@ Section rings_section(const Subject& subject) {
   if (t.size() == 0 || t.planar || !subject.frame.axial) {
     s.figures.push_back(absent("rings", "Ring by ring",
                                t.planar ? "The data are planar: there is no axis in space."
-                               : t.size() == 0 ? "No particle has a pose."
-                                               : "The average does not wind about an axis: its extents across the "
-                                                 "drawn z differ, and no symmetry axis was found."));
+                               : t.size() == 0
+                                   ? "No particle has a pose."
+                                   : "The average does not wind about an axis: its extents across the "
+                                     "drawn z differ, and no symmetry axis was found."));
     return s;
   }
   std::vector<double> z;
@@ -111,14 +112,16 @@ Section rings_section(const Subject& subject) {
                                : "One layer: no two can be told apart along z.");
   s.figures.push_back({"profile-z", "Along the axis", profile_svg(along, cuts, "z [nm]"),
                        layers > 1 ? "Dashed: where the layers below are cut." : ""});
-  s.figures.push_back({"profile-r", "Away from the axis", profile_svg(profile_of(radii(t)), {}, "radius [nm]"), {}});
+  s.figures.push_back(
+      {"profile-r", "Away from the axis", profile_svg(profile_of(radii(t)), {}, "radius [nm]"), {}});
   if (layers == 1) return s;
   RenderOptions options = subject.record.result.render;
   options.most_voxels_per_axis = kMostVoxels;
   const Volume whole = render(t, options);
   std::vector<Raster> layer;
   double brightest = 0;
-  Table table{{"layer", "z from [nm]", "to [nm]", "localisations", "median radius [nm]", "median z [nm]"}, {}};
+  Table table{{"layer", "z from [nm]", "to [nm]", "localisations", "median radius [nm]", "median z [nm]"},
+              {}};
   for (std::size_t k = 0; k < layers; ++k) {
     const double low = k == 0 ? -1e300 : cuts[k - 1], high = k + 1 == layers ? 1e300 : cuts[k];
     const smlm::LocalisationTable part = between(t, low, high);
@@ -126,12 +129,14 @@ Section rings_section(const Subject& subject) {
     brightest = std::max(brightest, layer.back().largest());
     std::vector<double> height;
     for (const auto& x : part.position_nm) height.push_back(x[2]);
-    table.rows.push_back({std::to_string(k + 1), k == 0 ? "" : fixed(low, 1), k + 1 == layers ? "" : fixed(high, 1),
-                          std::to_string(part.size()), part.size() ? fixed(quantile(radii(part), 0.5), 1) : "",
+    table.rows.push_back({std::to_string(k + 1), k == 0 ? "" : fixed(low, 1),
+                          k + 1 == layers ? "" : fixed(high, 1), std::to_string(part.size()),
+                          part.size() ? fixed(quantile(radii(part), 0.5), 1) : "",
                           part.size() ? fixed(quantile(height, 0.5), 1) : ""});
   }
   for (std::size_t k = 0; k < layers; ++k)
-    s.figures.push_back({"ring-" + std::to_string(k + 1), "Layer " + std::to_string(k + 1) + ", seen along z",
+    s.figures.push_back({"ring-" + std::to_string(k + 1),
+                         "Layer " + std::to_string(k + 1) + ", seen along z",
                          picture_svg(layer[k], heat_png(layer[k], brightest), "xy",
                                      "layer " + std::to_string(k + 1) + " of the average, seen along z"),
                          {}});

@@ -43,13 +43,20 @@ std::string utf8(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t length = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
+    const std::size_t length = lead < 0x80       ? 1
+                               : lead >> 5 == 6  ? 2
+                               : lead >> 4 == 14 ? 3
+                               : lead >> 3 == 30 ? 4
+                                                 : 0;
     bool valid = length > 0 && i + length <= text.size() && lead != 0xC0 && lead != 0xC1 && lead < 0xF5;
     for (std::size_t k = 1; valid && k < length; ++k)
       valid = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
-    if (valid && lead >= 0x20) out += text.substr(i, length);
-    else if (valid && (lead == '\n' || lead == '\t')) out += text[i];
-    else out += "\xEF\xBF\xBD";  // U+FFFD, for control characters too
+    if (valid && lead >= 0x20)
+      out += text.substr(i, length);
+    else if (valid && (lead == '\n' || lead == '\t'))
+      out += text[i];
+    else
+      out += "\xEF\xBF\xBD";  // U+FFFD, for control characters too
     i += valid ? length : 1;
   }
   return out;

@@ -13,11 +13,13 @@ namespace polar::report {
 
 namespace {
 constexpr std::size_t kMostResiduals = 4000;
-constexpr double kOutlier = 4;       // sigma: farther from every site is no residual but an outlier
+constexpr double kOutlier = 4;  // sigma: farther from every site is no residual but an outlier
 constexpr double kNormalOfMad = 1.4826;
 constexpr double kReach = 4, kBins = 32;
 
-double found(double stated_nm, double factor, double extra_nm) { return std::hypot(factor * stated_nm, extra_nm); }
+double found(double stated_nm, double factor, double extra_nm) {
+  return std::hypot(factor * stated_nm, extra_nm);
+}
 
 // Standard deviations across and along the optical axis of a localisation's own particle, as stated.
 std::array<double, 2> stated_nm(const RunRecord& record, std::size_t row) {
@@ -26,9 +28,11 @@ std::array<double, 2> stated_nm(const RunRecord& record, std::size_t row) {
   Eigen::Matrix3d m;
   m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
       double(c[4]), double(c[5]);
-  const Eigen::Matrix3d& r = record.poses[static_cast<std::size_t>(t.particle[row])].template_from_view->rotation;
+  const Eigen::Matrix3d& r =
+      record.poses[static_cast<std::size_t>(t.particle[row])].template_from_view->rotation;
   const Eigen::Matrix3d in_view = r.transpose() * m * r;
-  return {std::sqrt(std::max(0.0, (in_view(0, 0) + in_view(1, 1)) / 2)), std::sqrt(std::max(0.0, in_view(2, 2)))};
+  return {std::sqrt(std::max(0.0, (in_view(0, 0) + in_view(1, 1)) / 2)),
+          std::sqrt(std::max(0.0, in_view(2, 2)))};
 }
 
 bool has_pose(const RunRecord& record, std::size_t row) {
@@ -94,7 +98,8 @@ Figure residual_figure(const char* id, const std::string& title, const std::vect
     x.push_back(v);
     normal.push_back(static_cast<double>(h.total) * h.width * std::exp(-v * v / 2) / std::sqrt(kTwoPi));
   }
-  const double top = std::max(static_cast<double>(h.highest()), *std::max_element(normal.begin(), normal.end()));
+  const double top =
+      std::max(static_cast<double>(h.highest()), *std::max_element(normal.begin(), normal.end()));
   Plot plot({-kReach, kReach, "residual [sigma]"}, {0, 1.08 * top, "count"});
   plot.bars("c1", h);
   plot.line("c2", x, normal);
@@ -132,8 +137,9 @@ Section uncertainties_section(const Subject& subject) {
   plot.line("faint", {0, last}, {0, last});
   plot.line("c1", x, lateral);
   if (!subject.points.planar) plot.line("c2", x, axial);
-  plot.legend(subject.points.planar ? std::vector<std::pair<std::string, std::string>>{{"c1", "lateral"}}
-                                    : std::vector<std::pair<std::string, std::string>>{{"c1", "lateral"}, {"c2", "axial"}});
+  plot.legend(subject.points.planar
+                  ? std::vector<std::pair<std::string, std::string>>{{"c1", "lateral"}}
+                  : std::vector<std::pair<std::string, std::string>>{{"c1", "lateral"}, {"c2", "axial"}});
   s.figures.push_back({"calibration", "Stated against found", plot.svg("stated against found uncertainties"),
                        "found^2 = factor^2 stated^2 + extra^2. Grey: as stated."});
   const double stated = upper_median(r.stated_lateral_nm);
@@ -150,9 +156,10 @@ Section uncertainties_section(const Subject& subject) {
     s.figures.push_back(absent("residual-axial", "Axial residuals", "The data are planar."));
   }
   if (r.outliers > 0)
-    s.notes.push_back(percent(static_cast<double>(r.outliers) / static_cast<double>(r.stated_lateral_nm.size()), 1) +
-                      " of the localisations lie more than " + digits(kOutlier, 1) +
-                      " sigma from every site: outliers, left out of the residuals.");
+    s.notes.push_back(
+        percent(static_cast<double>(r.outliers) / static_cast<double>(r.stated_lateral_nm.size()), 1) +
+        " of the localisations lie more than " + digits(kOutlier, 1) +
+        " sigma from every site: outliers, left out of the residuals.");
   s.tables.push_back(table);
   return s;
 }

@@ -26,8 +26,10 @@ std::string doubt(const RunRecord& record) {
   if (record.resolution && !record.resolution->supported())
     return "two halves of the particles, registered independently, have no more in common than pure noise";
   if (static_cast<double>(accepted) < kFewestFit * static_cast<double>(all))
-    return "only " + std::to_string(accepted) + " of " + counted(all, "particle") + " fit the average; most of the "
-           "others: " + most_frequent_reason(record);
+    return "only " + std::to_string(accepted) + " of " + counted(all, "particle") +
+           " fit the average; most of the "
+           "others: " +
+           most_frequent_reason(record);
   if (!record.converged) return "the registration did not come to rest (" + record.stopped_because + ")";
   return {};
 }
@@ -68,8 +70,9 @@ Verdict verdict(const RunRecord& record) {
   if (v.state != "found" && v.state != "ambiguous" && v.state != "none") {
     const std::string why_not = doubt(record);
     v.state = accepted == 0 ? "none" : why_not.empty() ? "found" : "ambiguous";
-    v.sentence = v.state == "none" ? "none of " + counted(all, "particle") +
-                                         " has a pose; most were rejected because: " + most_frequent_reason(record)
+    v.sentence = v.state == "none"
+                     ? "none of " + counted(all, "particle") +
+                           " has a pose; most were rejected because: " + most_frequent_reason(record)
                  : v.state == "ambiguous" ? why_not
                                           : std::to_string(accepted) + " of " + counted(all, "particle") +
                                                 " fit one structure: " + support(record);
@@ -79,7 +82,8 @@ Verdict verdict(const RunRecord& record) {
   v.warnings = record.warnings;
   if (accepted > 0 && !record.resolution && record.agreement == 0)
     v.warnings.emplace_back(
-        "nothing independent stands beside this average: no half-maps were made (output.resolution: halves), and no "
+        "nothing independent stands beside this average: no half-maps were made (output.resolution: halves), "
+        "and no "
         "two searches were found to agree; compare another seed before trusting details");
   for (std::size_t i = 0; i < record.rejected_rows.size(); ++i)
     v.warnings.push_back(std::to_string(record.rejected_rows[i]) +
@@ -92,9 +96,13 @@ std::vector<KeyNumber> key_numbers(const RunRecord& record) {
   std::vector<KeyNumber> numbers;
   numbers.push_back({"particles accepted", std::to_string(accepted) + " of " + std::to_string(all),
                      all ? percent(static_cast<double>(accepted) / static_cast<double>(all)) : ""});
-  const std::size_t locs = record.result.superparticle.size();
-  numbers.push_back({"localisations", std::to_string(locs),
-                     accepted ? digits(static_cast<double>(locs) / static_cast<double>(accepted)) + " a particle" : ""});
+  const std::size_t aligned = record.result.superparticle.size();
+  std::size_t left = 0;
+  for (const PoseRow& p : record.poses) left += p.accepted ? 0 : p.n_localisations;
+  numbers.push_back(
+      {"localisations aligned", std::to_string(aligned),
+       accepted ? digits(static_cast<double>(aligned) / static_cast<double>(accepted)) + " a particle"
+                : std::to_string(left) + " in rejected particles"});
   if (record.resolution)
     numbers.push_back({"resolution", resolution_text(record.resolution->data),
                        "noise alone: " + resolution_text(record.resolution->noise)});

@@ -14,9 +14,9 @@ struct Verdict {
   std::vector<std::string> warnings;  // the run's own, and what a reader must know before trusting it
 };
 
-/// The record's own verdict where it has one. Else none without an accepted particle; ambiguous where the halves
-/// have no more in common than noise, fewer than half of the particles fit, or the rounds did not end by
-/// themselves; else found.
+/// The record's own verdict where it has one. Else none without an accepted particle; ambiguous where the
+/// halves have no more in common than noise, fewer than half of the particles fit, or the rounds did not end
+/// by themselves; else found.
 Verdict verdict(const RunRecord& record);
 
 /// A number, its unit, and a line below it.

@@ -147,7 +147,8 @@ void write_rejected(File& file, const Results& r) {
     }
   }
   const std::size_t n = particle.size();
-  write_with_unit(file, "/rejected/position", position, {n, 3}, "nm", "x, y, z in the table's own coordinates");
+  write_with_unit(file, "/rejected/position", position, {n, 3}, "nm",
+                  "x, y, z in the table's own coordinates");
   write_with_unit(file, "/rejected/particle", particle, {n}, "1", "row of /poses");
 }
 

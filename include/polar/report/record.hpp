@@ -1,5 +1,5 @@
-// All that a page tells of a run, as results.h5 holds it. What a record lacks is empty, NaN or absent here, and
-// the page says so.
+// All that a page tells of a run, as results.h5 holds it. What a record lacks is empty, NaN or absent here,
+// and the page says so.
 #pragma once
 
 #include <array>
@@ -18,6 +18,9 @@ namespace polar {
 /// The particles' own state beside their row in poses.csv.
 struct ParticleFit {
   double outlier_fraction = PoseRow::kNone, visibility = PoseRow::kNone;
+  /// Spread of the pose's posterior over all poses, where it was computed: more than the local covariance
+  /// tells.
+  double posterior_rotation_deg = PoseRow::kNone, posterior_translation_nm = PoseRow::kNone;
 };
 
 struct StartRecord {

@@ -19,12 +19,12 @@ using ::testing::Not;
 class BatchPage : public ::testing::Test {
  protected:
   BatchPage() {
-    std::filesystem::create_directories(directory_.path("first"));
+    std::filesystem::create_directories(directory_.path("first 1"));
     const Results results = pores(6);
-    write_result_file(directory_.path("first/results.h5"), results, superparticle(results));
-    std::ofstream(directory_.path("first/report.html")) << "a page";
+    write_result_file(directory_.path("first 1/results.h5"), results, superparticle(results));
+    std::ofstream(directory_.path("first 1/report.html")) << "a page";
     write("batch.json", R"({"program": "polar test", "datasets": [
-      {"name": "first", "condition": "wild & type", "state": "done", "reason": "", "exit_code": 0, "particles": 6,
+      {"name": "first 1", "condition": "wild & type", "state": "done", "reason": "", "exit_code": 0, "particles": 6,
        "accepted": 3, "localisations": 60, "resolution_nm": null, "rotation_std_deg": 1.5, "symmetry": "C8"},
       {"name": "</script>", "condition": "mutant", "state": "failed", "reason": "there is no table", "exit_code": 3}]})");
     write("conditions.csv",
@@ -32,14 +32,16 @@ class BatchPage : public ::testing::Test {
           "accepted_share,wild & type,,1,,0.5,0.4,0.6\n"
           "accepted_share,wild & type,mutant,1,1,0.25,-0.1,0.6\n");
   }
-  void write(const std::string& name, const std::string& text) { std::ofstream(directory_.path(name)) << text; }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(directory_.path(name)) << text;
+  }
   support::TemporaryDirectory directory_;
 };
 
 TEST_F(BatchPage, ReadsRowsMeansAndThumbnails) {
   const BatchRecord b = read_batch_record(directory_.path());
   ASSERT_EQ(b.datasets.size(), 2u);
-  EXPECT_EQ(b.datasets[0].link, "first/report.html");
+  EXPECT_EQ(b.datasets[0].link, "./first%201/report.html");
   EXPECT_EQ(b.datasets[0].thumbnail_png.substr(1, 3), "PNG");
   EXPECT_EQ(b.datasets[0].number.count("resolution_nm"), 0u);
   EXPECT_EQ(b.datasets[0].number.count("exit_code"), 0u);
@@ -67,7 +69,7 @@ TEST_F(BatchPage, RefusesWhatIsNoBatch) {
 }
 
 TEST_F(BatchPage, ADataSetThatIsBeingWrittenHasNoThumbnailYet) {
-  write("first/results.h5", "half a file");
+  write("first 1/results.h5", "half a file");
   EXPECT_EQ(read_batch_record(directory_.path()).datasets[0].thumbnail_png, "");
 }
 

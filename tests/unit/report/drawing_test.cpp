@@ -112,8 +112,8 @@ Volume disc(double radius_nm) {
   v.density.resize(41 * 41);
   for (std::size_t y = 0; y < 41; ++y)
     for (std::size_t x = 0; x < 41; ++x)
-      v.density[y * 41 + x] =
-          static_cast<float>(radius_nm - std::hypot(static_cast<double>(x) - 20, static_cast<double>(y) - 20));
+      v.density[y * 41 + x] = static_cast<float>(
+          radius_nm - std::hypot(static_cast<double>(x) - 20, static_cast<double>(y) - 20));
   return v;
 }
 
@@ -139,7 +139,8 @@ TEST(ReportRaster, ProjectionsKeepTheSum) {
     EXPECT_DOUBLE_EQ(sum, 276);
   }
   EXPECT_DOUBLE_EQ(summed(v, kTopView, 3, 4).value[0], 18);
-  const std::string svg = picture_svg(projected(v, kTopView), heat_png(projected(v, kTopView), 1), "xy", "a picture");
+  const std::string svg =
+      picture_svg(projected(v, kTopView), heat_png(projected(v, kTopView), 1), "xy", "a picture");
   EXPECT_THAT(svg, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
   EXPECT_THAT(svg, HasSubstr(" nm<"));  // the scale bar's length
   EXPECT_THAT(svg, Not(HasSubstr("nan")));

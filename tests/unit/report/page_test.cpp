@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <functional>
 
 #include "polar/core/parallel.hpp"
 #include "smlm/error.hpp"
@@ -39,13 +39,104 @@ TEST(ReportRecord, HoldsWhatTheRunWrote) {
   }
   EXPECT_EQ(accepted_particles(r), 5u);
   EXPECT_EQ(r.rejected_particle.size(), results.particles.particles[1].rows.size());
-  EXPECT_EQ(r.rejected_position[0], results.particles.table.position_nm[results.particles.particles[1].rows[0]]);
+  EXPECT_EQ(r.rejected_position[0],
+            results.particles.table.position_nm[results.particles.particles[1].rows[0]]);
   EXPECT_EQ(r.command, "polar run 'my pores.yaml'");
   EXPECT_EQ(r.input_sha256[0], std::string(64, 'a'));
   EXPECT_EQ(r.starts.size(), 2u);
   EXPECT_TRUE(std::isnan(r.starts[0].held_out_std));
   EXPECT_TRUE(r.resolution.has_value());
   EXPECT_TRUE(r.history.empty());
+}
+
+// The smallest record that is one, with one particle, and with `more` in it.
+RunRecord smallest(const std::function<void(smlm::h5::File&)>& more) {
+  const support::TemporaryDirectory directory;
+  smlm::h5::File f = smlm::h5::File::create(directory.path("results.h5"));
+  f.write_string_attribute("/", "format", "polar-smlm result");
+  f.write_attribute("/", "format_version", std::int32_t{1});
+  f.write_strings("/poses/particle", {"a"});
+  f.write_strings("/poses/reason", {""});
+  f.write("/poses/accepted", std::vector<std::uint8_t>{1});
+  for (const char* name : {"n_localisations", "n_used"})
+    f.write(std::string("/poses/") + name, std::vector<std::uint64_t>{1});
+  f.write("/poses/rotation", std::vector<double>{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 3, 3});
+  f.write("/poses/translation", std::vector<double>{0, 0, 0}, {1, 3});
+  f.write("/poses/covariance", std::vector<double>(36, 0.01), {1, 6, 6});
+  for (const char* name : {"log_likelihood", "margin"})
+    f.write(std::string("/poses/") + name, std::vector<double>{1});
+  f.write("/superparticle/position", std::vector<double>{1, 2, 3}, {1, 3});
+  f.write("/superparticle/covariance", std::vector<float>{1, 0, 0, 1, 0, 1}, {1, 6});
+  f.write("/superparticle/particle", std::vector<std::int64_t>{0});
+  f.write("/superparticle/source_file", std::vector<std::uint32_t>{0});
+  f.write("/superparticle/source_row", std::vector<std::uint64_t>{1});
+  f.write_attribute("/superparticle", "planar", std::uint8_t{0});
+  f.write_strings("/input/file", {"a.csv"});
+  f.write_strings("/input/column_name", {});
+  f.write_strings("/input/column_unit", {});
+  f.make_group("/run/calibration");
+  for (const char* name : {"lateral_factor", "axial_factor", "lateral_extra_nm", "axial_extra_nm"})
+    f.write_attribute("/run/calibration", name, 1.0);
+  for (const char* name : {"program", "configuration", "input_hash"})
+    f.write_strings(std::string("/run/") + name, {"x"});
+  f.write("/template/centre", std::vector<double>{1, 2, 3}, {1, 3});
+  f.write("/template/weight", std::vector<double>{1});
+  f.write_attribute("/template", "width_nm", 1.0);
+  more(f);
+  f.close();
+  return read_run_record(directory.path("results.h5"));
+}
+
+TEST(ReportRecord, TakesWhatMayBeThereAndDoesWithout) {
+  const RunRecord bare = smallest([](smlm::h5::File&) {});
+  EXPECT_TRUE(bare.verdict.empty() && bare.starts.empty() && bare.history.empty() && !bare.symmetry &&
+              !bare.resolution);
+  EXPECT_THAT(report_page(bare, "bare"), HasSubstr("id=\"verdict\""));
+  const RunRecord full = smallest([](smlm::h5::File& f) {
+    f.write_string_attribute("/run", "verdict", "ambiguous");
+    f.write_strings("/run/verdict_sentence", {"Two structures fit."});
+    f.write_strings("/run/starts/name", {"random 1"});
+    f.write("/run/starts/held_out_log_likelihood", std::vector<double>{1});
+    f.write("/run/starts/held_out_std", std::vector<double>{0.5});
+    f.write("/run/starts/final_held_out_std", std::vector<double>{0.25});
+    f.write("/run/history/moved", std::vector<double>{5, 1});
+    f.write("/run/history/escaped", std::vector<double>{2});
+    f.write("/poses/posterior_rotation_deg", std::vector<double>{7});
+    f.make_group("/resolution/halves");
+    f.write("/resolution/curve/particles", std::vector<double>{1, 2});
+    f.write("/resolution/curve/resolution_nm", std::vector<double>{9, 8});
+  });
+  EXPECT_EQ(full.verdict_sentence, "Two structures fit.");
+  EXPECT_EQ(full.starts[0].held_out_std, 0.5);
+  EXPECT_EQ(full.starts[0].final_held_out_std, 0.25);
+  ASSERT_EQ(full.history.size(), 2u);
+  EXPECT_EQ(full.history[0].escaped, 2);
+  EXPECT_TRUE(std::isnan(full.history[1].escaped));
+  EXPECT_EQ(full.fit[0].posterior_rotation_deg, 7);
+  EXPECT_TRUE(std::isnan(full.fit[0].posterior_translation_nm));
+  EXPECT_EQ(full.curve_resolution_nm, (std::vector<double>{9, 8}));
+  EXPECT_THAT(report_page(full, "full"), HasSubstr("Two structures fit."));
+}
+
+TEST(ReportRecord, DamageIsNamed) {
+  const auto fault = [](const std::function<void(smlm::h5::File&)>& more) {
+    try {
+      smallest(more);
+    } catch (const smlm::Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(fault([](smlm::h5::File& f) {
+                f.write("/rejected/position", std::vector<double>{1, 2, 3}, {1, 3});
+                f.write("/rejected/particle", std::vector<std::int64_t>{7});
+              }),
+              HasSubstr("/rejected: names a particle that is not there"));
+  EXPECT_THAT(fault([](smlm::h5::File& f) { f.write("/rejected/particle", std::vector<std::int64_t>{0}); }),
+              HasSubstr("/rejected: columns of different lengths"));
+  EXPECT_THAT(fault([](smlm::h5::File& f) { f.write_strings("/run/timings/stage", {"a"}); }),
+              HasSubstr("/run/timings"));
+  EXPECT_THAT(fault([](smlm::h5::File& f) { f.make_group("/symmetry"); }), HasSubstr("/symmetry"));
 }
 
 TEST(ReportRecord, RefusesWhatIsNoResult) {
@@ -60,8 +151,9 @@ TEST(ReportRecord, RefusesWhatIsNoResult) {
 TEST(ReportPage, HasEverySectionAndIsSmall) {
   const std::string page = report_page(through_file(pores(6)), "pores");
   EXPECT_LT(page.size(), kMostBytes);
-  for (const char* id : {"verdict", "average", "rings", "resolution", "directions", "scores", "gallery", "labelling",
-                         "uncertainties", "search", "again", "particles", "turntable", "configuration"})
+  for (const char* id :
+       {"verdict", "average", "rings", "resolution", "directions", "scores", "gallery", "labelling",
+        "uncertainties", "search", "again", "particles", "turntable", "configuration"})
     EXPECT_THAT(page, HasSubstr("id=\"" + std::string(id) + "\""));
   EXPECT_THAT(page, Not(HasSubstr("{{")));       // a template that was not filled
   EXPECT_THAT(page, Not(HasSubstr("http://")));  // nothing is fetched

@@ -38,7 +38,8 @@ HalfMaps halves(std::vector<double> correlation) {
   h.first_particles = h.second_particles = 6;
   h.voxel_nm = 1;
   for (std::size_t i = 0; i < correlation.size(); ++i)
-    h.shells.frequency_per_nm.push_back(0.5 * static_cast<double>(i + 1) / static_cast<double>(correlation.size()));
+    h.shells.frequency_per_nm.push_back(0.5 * static_cast<double>(i + 1) /
+                                        static_cast<double>(correlation.size()));
   h.shells.coefficients.assign(correlation.size(), 10);
   h.shells.correlation = std::move(correlation);
   h.resolution = shell_resolution(h.shells);
@@ -58,7 +59,8 @@ TEST_F(Sections, VerdictFollowsTheEvidence) {
   EXPECT_EQ(verdict(record_).state, "ambiguous");
   EXPECT_THAT(verdict(record_).sentence, HasSubstr("no more in common than pure noise"));
   record_.resolution.reset();
-  for (std::size_t i = 0; i < 8; ++i) record_.poses[i].accepted = false, record_.poses[i].reason = "it is too small";
+  for (std::size_t i = 0; i < 8; ++i)
+    record_.poses[i].accepted = false, record_.poses[i].reason = "it is too small";
   EXPECT_EQ(verdict(record_).state, "ambiguous");
   EXPECT_THAT(verdict(record_).sentence, HasSubstr("only 4 of 12 particles"));
   for (PoseRow& p : record_.poses) p.accepted = false, p.reason = "it is too small";
@@ -70,10 +72,12 @@ TEST_F(Sections, VerdictFollowsTheEvidence) {
 
 TEST_F(Sections, ResolutionSaysWhereTheCurveFallsOrThatItNeverDoes) {
   EXPECT_THAT(figure(resolution_section(Subject(record_)), "fsc").svg, IsEmpty());
-  EXPECT_THAT(figure(resolution_section(Subject(record_)), "fsc").caption, HasSubstr("output.resolution: halves"));
+  EXPECT_THAT(figure(resolution_section(Subject(record_)), "fsc").caption,
+              HasSubstr("output.resolution: halves"));
   record_.resolution = ResolutionReport{halves({1, 1, 1, 0.143, 0}), halves({0, 0, 0, 0, 0})};
   Section s = resolution_section(Subject(record_));
-  EXPECT_THAT(notes(s), HasSubstr("The halves: falls below the threshold at a period of 2.50 nm"));  // 1 / 0.4
+  EXPECT_THAT(notes(s),
+              HasSubstr("The halves: falls below the threshold at a period of 2.50 nm"));  // 1 / 0.4
   EXPECT_THAT(notes(s), HasSubstr("The control on noise: already below the threshold"));
   EXPECT_THAT(figure(s, "fsc").svg, HasSubstr(">2.50 nm<"));
   record_.resolution->data = halves({1, 1, 1, 1, 1});
@@ -82,7 +86,8 @@ TEST_F(Sections, ResolutionSaysWhereTheCurveFallsOrThatItNeverDoes) {
   EXPECT_THAT(figure(s, "fsc").svg, Not(HasSubstr("2.50 nm")));
   EXPECT_THAT(figure(s, "resolution-curve").caption, HasSubstr("share the poses of this run"));
   record_.curve_particles = {3, 6, 12}, record_.curve_resolution_nm = {9, 7, 6};
-  EXPECT_THAT(figure(resolution_section(Subject(record_)), "resolution-curve").caption, Not(HasSubstr("share the poses")));
+  EXPECT_THAT(figure(resolution_section(Subject(record_)), "resolution-curve").caption,
+              Not(HasSubstr("share the poses")));
   record_.resolution->noise = HalfMaps();
   EXPECT_THAT(notes(resolution_section(Subject(record_))), HasSubstr("no particle of pure noise got a pose"));
 }
@@ -105,7 +110,8 @@ TEST_F(Sections, DirectionsAreNamedForWhatTheyAre) {
     record.fit.assign(400, record.fit[0]);
     const Subject frame(record_);  // the drawn frame must not decide
     for (std::size_t i = 0; i < 400; ++i) {
-      const double u = (static_cast<double>(i) + 0.5) / 400, v = std::fmod(static_cast<double>(i) * 0.618033988749895, 1);
+      const double u = (static_cast<double>(i) + 0.5) / 400,
+                   v = std::fmod(static_cast<double>(i) * 0.618033988749895, 1);
       const Eigen::Vector3d z = optical_axis(u, v).normalized();
       Pose pose;
       pose.rotation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), z).toRotationMatrix();
@@ -123,12 +129,14 @@ TEST_F(Sections, DirectionsAreNamedForWhatTheyAre) {
                 return Eigen::Vector3d(0.2 * std::cos(kTurn * v), 0.2 * std::sin(kTurn * v), 1);
               }),
               HasSubstr("gathered"));
-  EXPECT_THAT(named([](double, double v) { return Eigen::Vector3d(std::cos(kTurn * v), std::sin(kTurn * v), 0.05); }),
-              HasSubstr("a belt"));
+  EXPECT_THAT(
+      named([](double, double v) { return Eigen::Vector3d(std::cos(kTurn * v), std::sin(kTurn * v), 0.05); }),
+      HasSubstr("a belt"));
 }
 
 TEST_F(Sections, ScoresDrawTheCutAndNameEveryRejection) {
-  for (std::size_t i = 0; i < kParticles; ++i) record_.poses[i].log_likelihood = 1 + 0.01 * static_cast<double>(i);
+  for (std::size_t i = 0; i < kParticles; ++i)
+    record_.poses[i].log_likelihood = 1 + 0.01 * static_cast<double>(i);
   record_.poses[5].log_likelihood = 40;
   const Section s = scores_section(Subject(record_));
   EXPECT_THAT(figure(s, "log-likelihood").svg, HasSubstr(">unlike<"));
@@ -152,11 +160,13 @@ TEST_F(Sections, GalleryShowsBestWorstAndRejectedOrSaysWhyNot) {
   EXPECT_THAT(figure(gallery_section(Subject(old)), "gallery-rejected").caption, HasSubstr("does not hold"));
   for (PoseRow& p : record_.poses) p.accepted = true;
   record_.rejected_particle.clear(), record_.rejected_position.clear();
-  EXPECT_THAT(figure(gallery_section(Subject(record_)), "gallery-rejected").caption, HasSubstr("No particle was rejected"));
+  EXPECT_THAT(figure(gallery_section(Subject(record_)), "gallery-rejected").caption,
+              HasSubstr("No particle was rejected"));
 }
 
 TEST_F(Sections, OccupancyCountsParticlesThatShowAUnit) {
-  EXPECT_THAT(figure(labelling_section(Subject(record_)), "occupancy").caption, HasSubstr("registration.symmetry"));
+  EXPECT_THAT(figure(labelling_section(Subject(record_)), "occupancy").caption,
+              HasSubstr("registration.symmetry"));
   SymmetryRecord y;
   y.group = "C2";
   y.unit_nm = Eigen::Matrix3Xd(3, 2);
@@ -164,7 +174,8 @@ TEST_F(Sections, OccupancyCountsParticlesThatShowAUnit) {
   record_.symmetry = y;
   smlm::LocalisationTable& t = record_.result.superparticle;
   // Unit 1 is shown by every particle, unit 2 by the first alone.
-  for (std::size_t i = 0; i < t.size(); ++i) t.position_nm[i] = {t.particle[i] == 0 && i % 2 == 0 ? -1000.0 : 1000.0, 0, 0};
+  for (std::size_t i = 0; i < t.size(); ++i)
+    t.position_nm[i] = {t.particle[i] == 0 && i % 2 == 0 ? -1000.0 : 1000.0, 0, 0};
   const Section s = labelling_section(Subject(record_));
   EXPECT_THAT(figure(s, "occupancy").svg, HasSubstr("100.0 %"));
   EXPECT_THAT(figure(s, "occupancy").svg, HasSubstr("9.1 % (2 % to 38 %)"));  // Wilson, 1 of 11
