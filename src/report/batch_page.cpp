@@ -108,7 +108,7 @@ std::string datasets_json(const BatchRecord& batch) {
   head("particles", true), head("accepted", true), head("localisations", true), head("resolution [nm]", true);
   head("place [nm]", true), head("rotation [deg]", true), head("symmetry", false), head("labelling", true);
   head("seconds", true), head("reason", false);
-  const auto number = [](double v) { return std::isfinite(v) ? json(std::stod(digits(v, 4))) : json(); };
+  const auto number = [](double v) { return rounded_json(v, 4); };
   for (const BatchDataset& d : batch.datasets) {
     json name = {{"text", d.name}};
     if (!d.link.empty()) name["link"] = d.link;
@@ -127,7 +127,7 @@ std::string datasets_json(const BatchRecord& batch) {
 }  // namespace
 
 std::string batch_page(const BatchRecord& batch, const std::string& name) {
-  Data page = page_data(name, {strips_section(batch)});
+  Data page = page_data(name, "polar batch", {strips_section(batch)});
   std::map<std::string, std::size_t> states;
   for (const BatchDataset& d : batch.datasets) ++states[d.state];
   std::string words;

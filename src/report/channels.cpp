@@ -12,16 +12,16 @@ constexpr std::size_t kMostChannels = 4;
 // Told apart by most colour-blind readers: magenta, green, and two more.
 constexpr Tint kTints[kMostChannels] = {{1, 0.2, 0.9}, {0.2, 1, 0.3}, {0.3, 0.6, 1}, {1, 0.7, 0.1}};
 
-const smlm::ExtraColumn* channel_column(const smlm::LocalisationTable& table) {
+const smlm::ExtraColumn* column_named(const smlm::LocalisationTable& table, const std::string& name) {
   for (const smlm::ExtraColumn& c : table.extra)
-    if (c.name == "channel") return &c;
+    if (!name.empty() && c.name == name) return &c;
   return nullptr;
 }
 }  // namespace
 
-std::vector<Channel> channels_of(const smlm::LocalisationTable& table) {
+std::vector<Channel> channels_of(const smlm::LocalisationTable& table, const std::string& name) {
   const Channel all{"all", "t0", kTints[0], std::vector<bool>(table.size(), true)};
-  const smlm::ExtraColumn* column = channel_column(table);
+  const smlm::ExtraColumn* column = column_named(table, name);
   if (!column) return {all};
   std::map<double, std::vector<bool>> of;
   for (std::size_t i = 0; i < table.size(); ++i) {

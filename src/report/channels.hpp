@@ -1,4 +1,4 @@
-// Colours of a measurement: the values of the column `channel`, where a table has one.
+// Colours of a measurement: the values of the column that a record names.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct Channel {
 };
 
 /// One channel of everything where there is no such column, or more than four values.
-std::vector<Channel> channels_of(const smlm::LocalisationTable& table);
+std::vector<Channel> channels_of(const smlm::LocalisationTable& table, const std::string& column);
 
 /// One volume a channel, all of one grid.
 std::vector<Volume> render_channels(const smlm::LocalisationTable& table,

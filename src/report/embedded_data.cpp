@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "base64.hpp"
 #include "channels.hpp"
@@ -15,10 +16,7 @@ constexpr std::size_t kMostRows = 20000, kMostPoints = 24000;
 constexpr double kHeld = 0.995;  // of the localisations: the farthest do not set the scale
 constexpr double kFull = 32767;
 
-nlohmann::json number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::stod(digits(value, 5));
-}
+nlohmann::json number(double value) { return rounded_json(value, 5); }
 
 void append_int16(std::string& bytes, double share) {
   const auto value = static_cast<std::int16_t>(std::lround(kFull * std::clamp(share, -1.0, 1.0)));
@@ -27,6 +25,11 @@ void append_int16(std::string& bytes, double share) {
   bytes += static_cast<char>(bits >> 8);
 }
 }  // namespace
+
+nlohmann::json rounded_json(double value, int significant) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::strtod(digits(value, significant).c_str(), nullptr);
+}
 
 std::string script_json(const nlohmann::json& value) {
   const std::string text = value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -67,7 +70,7 @@ std::string turntable_json(const Subject& subject) {
   std::vector<double> distance;
   for (const auto& x : t.position_nm) distance.push_back(std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
   const double half_nm = std::max(1e-6, quantile(distance, kHeld));
-  const std::vector<Channel> channels = channels_of(t);
+  const std::vector<Channel> channels = channels_of(t, subject.record.channel_column);
   std::string points, channel;
   std::size_t n = 0;
   const std::size_t stride = (t.size() + kMostPoints - 1) / kMostPoints;

@@ -11,6 +11,9 @@ namespace polar::report {
 /// Safe within a <script>: no "<", and valid whatever a particle is called.
 std::string script_json(const nlohmann::json& value);
 
+/// With so many significant digits; null where it is no number.
+nlohmann::json rounded_json(double value, int significant);
+
 /// The table of particles: {"heads": [{"name", "number"}], "rows": [[...]]}; `left_out` particles beyond the
 /// most that a page takes.
 std::string particle_table_json(const RunRecord& record, std::size_t& left_out);

@@ -14,7 +14,7 @@ std::size_t Histogram::highest() const {
 }
 
 std::vector<double> sorted_finite(std::vector<double> values) {
-  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
+  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !(std::abs(v) < 1e30); }),
                values.end());
   std::sort(values.begin(), values.end());
   return values;

@@ -26,7 +26,7 @@ Histogram histogram_between(const std::vector<double>& values, double low, doubl
 /// One bin a whole number from 0 or from the smallest; wider where there are more than `most_bins`.
 Histogram whole_number_histogram(const std::vector<double>& values, std::size_t most_bins = 40);
 
-/// The finite ones, sorted.
+/// The finite ones, sorted; numbers that no quantity here can have (1e30) count as none.
 std::vector<double> sorted_finite(std::vector<double> values);
 
 /// 1, 2 or 5 times a power of ten, the least that is not below `least`.

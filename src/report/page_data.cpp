@@ -41,7 +41,7 @@ Data text_list(const std::vector<std::string>& texts) {
   return all;
 }
 
-Data page_data(const std::string& title, const std::vector<Section>& sections) {
+Data page_data(const std::string& title, const std::string& kind, const std::vector<Section>& sections) {
   Data all = list();
   for (const Section& s : sections) {
     Data section, figures = list(), tables = list();
@@ -59,6 +59,8 @@ Data page_data(const std::string& title, const std::vector<Section>& sections) {
   }
   Data page;
   page.set("title", utf8(title));
+  page.set("kind", kind);
+  page.set("head", template_text("head.html"));
   page.set("style", template_text("style.css"));
   page.set("sections", all);
   page.set("section_list", template_text("sections.html"));

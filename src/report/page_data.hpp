@@ -9,8 +9,8 @@
 
 namespace polar::report {
 
-/// Title, style and sections.
-Data page_data(const std::string& title, const std::vector<Section>& sections);
+/// Head (the title with `kind` behind it), style and sections.
+Data page_data(const std::string& title, const std::string& kind, const std::vector<Section>& sections);
 
 /// Texts as a list.
 Data text_list(const std::vector<std::string>& texts);

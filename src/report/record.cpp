@@ -47,6 +47,26 @@ T at(const std::vector<T>& values, std::size_t i, T otherwise) {
   throw smlm::Error(smlm::Fault::input, file.path(), what, "run again");
 }
 
+// What is drawn must be lengths: a damaged file may hold any number.
+void check_lengths(const File& file, const ResultRecord& r) {
+  constexpr double kLongest_nm = 1e9;  // a metre
+  const auto length = [](double x) { return std::abs(x) < kLongest_nm; };
+  const smlm::LocalisationTable& t = r.superparticle;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const auto& x = t.position_nm[i];
+    const bool variances = std::all_of(t.covariance_nm2[i].begin(), t.covariance_nm2[i].end(), [&](float c) {
+      return std::abs(double(c)) < kLongest_nm * kLongest_nm;
+    });
+    if (!length(x[0]) || !length(x[1]) || !length(x[2]) || !variances)
+      damaged(file, "/superparticle: a position or covariance that is none");
+  }
+  for (const double x : r.sites.centre_nm.reshaped())
+    if (!length(x)) damaged(file, "/template: a centre that is none");
+  for (const double x : {r.render.lateral_factor, r.render.axial_factor, r.render.lateral_extra_nm,
+                         r.render.axial_extra_nm, r.sites.width_nm})
+    if (!length(x)) damaged(file, "a calibration or width that is none");
+}
+
 void read_poses(const File& file, RunRecord& r) {
   const auto name = file.read_strings("/poses/particle"), reason = file.read_strings("/poses/reason");
   const auto accepted = file.read<std::uint8_t>("/poses/accepted");
@@ -103,6 +123,8 @@ void read_rejected(const File& file, RunRecord& r) {
   if (position.size() != 3 * r.rejected_particle.size())
     damaged(file, "/rejected: columns of different lengths");
   for (std::size_t i = 0; i < r.rejected_particle.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (!std::isfinite(position[3 * i + a])) damaged(file, "/rejected: a position that is none");
     if (r.rejected_particle[i] < 0 || r.rejected_particle[i] >= static_cast<std::int64_t>(r.poses.size()))
       damaged(file, "/rejected: names a particle that is not there");
     r.rejected_position.push_back({position[3 * i], position[3 * i + 1], position[3 * i + 2]});
@@ -198,6 +220,7 @@ void read_provenance(const File& file, RunRecord& r) {
   r.verdict = text_attribute(file, "/run", "verdict");
   r.verdict_sentence = first(texts(file, "/run/verdict_sentence"));
   r.weights_sha256 = text_attribute(file, "/run", "weights_sha256");
+  r.channel_column = text_attribute(file, "/superparticle", "channel_column");
   r.command = first(texts(file, "/run/command"));
   r.machine = first(texts(file, "/run/machine"));
   r.input_file = texts(file, "/run/input_file");
@@ -215,6 +238,7 @@ RunRecord read_run_record(const std::string& path) {
   smlm::h5::Limits limits;
   limits.variable_text = false;  // never written here
   const File file = File::open(path, limits);
+  check_lengths(file, r.result);
   read_poses(file, r);
   read_rejected(file, r);
   read_symmetry(file, r);

@@ -8,7 +8,9 @@ import browser
 from harness import HEADER, PolarCase
 
 MOST_BYTES = 5_000_000
-SMALL = "simulation: {particles: 10, blinks_mean: 4, cramer_rao: false}"
+# Upright particles that the start `imaged` finds at once.
+SMALL = "simulation: {particles: 10, blinks_mean: 3, orientation: in_plane, tilt_std_deg: 10, cramer_rao: false}"
+QUICK = "registration: {starts: [imaged]%s}\n"
 
 # Every figure: whether it is there, what it shows, and whether it stays within the window.
 FIGURES = """
@@ -75,7 +77,7 @@ class Report(PolarCase):
 
     def test_page_of_a_run(self):
         self.simulate(SMALL)
-        self.ok("run", self.run_config(more="registration: {symmetry: detect}\noutput: {resolution: halves}\n"))
+        self.ok("run", self.run_config(more=QUICK % ", symmetry: C8" + "output: {resolution: halves}\n"))
         page = self.folder / "results" / "report.html"
         figures = self.look_at_all(page)
         for present in ("projection-xy", "projection-xz", "projection-yz", "slice-xy", "turntable", "fsc", "sphere", "tilt",
@@ -111,7 +113,7 @@ class Report(PolarCase):
         rows = "".join(",".join(f"{numbers.gauss(0, 30):.3f}" for _ in range(3)) + f",3,3,6,{i % 20}\n"
                        for i in range(20 * 60))
         self.write("data/localisations.csv", HEADER + rows)
-        run = ("run", self.run_config(), "--output", "noise")
+        run = ("run", self.run_config(more=QUICK % ""), "--output", "noise")
         self.fails(5, "no particle could be registered", *run)
         page = self.folder / "noise" / "report.html"
         figures = self.look_at_all(page)
@@ -121,8 +123,8 @@ class Report(PolarCase):
         self.fails(5, "no particle could be registered", *run)  # given again: not in its own way
 
     def test_page_of_planar_data_and_written_anew(self):
-        self.simulate(SMALL.replace("{", "{planar: true, orientation: in_plane, "))
-        self.ok("run", self.run_config())
+        self.simulate(SMALL.replace("tilt_std_deg: 10", "planar: true"))
+        self.ok("run", self.run_config(more=QUICK % ""))
         page = self.folder / "results" / "report.html"
         self.assertEqual(self.look_at_all(page)["turntable"]["state"], "absent")
         first = page.read_bytes()

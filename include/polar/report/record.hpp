@@ -69,6 +69,7 @@ struct RunRecord {
   std::vector<std::uint64_t> rejected_rows;
   std::uint64_t seed = 0;
   std::string verdict, verdict_sentence;  // found | ambiguous | none; empty: left to the page
+  std::string channel_column;            // of the superparticle, where it holds several channels
   std::string command, machine, weights_sha256;
   std::vector<std::string> input_file, input_sha256;  // parallel
 };

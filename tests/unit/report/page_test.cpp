@@ -136,6 +136,11 @@ TEST(ReportRecord, DamageIsNamed) {
               HasSubstr("/rejected: columns of different lengths"));
   EXPECT_THAT(fault([](smlm::h5::File& f) { f.write_strings("/run/timings/stage", {"a"}); }),
               HasSubstr("/run/timings"));
+  EXPECT_THAT(fault([](smlm::h5::File& f) {
+                f.write("/rejected/position", std::vector<double>{1, INFINITY, 3}, {1, 3});
+                f.write("/rejected/particle", std::vector<std::int64_t>{0});
+              }),
+              HasSubstr("/rejected: a position that is none"));
   EXPECT_THAT(fault([](smlm::h5::File& f) { f.make_group("/symmetry"); }), HasSubstr("/symmetry"));
 }
 

@@ -62,7 +62,7 @@ TEST_F(Sections, VerdictFollowsTheEvidence) {
   for (std::size_t i = 0; i < 8; ++i)
     record_.poses[i].accepted = false, record_.poses[i].reason = "it is too small";
   EXPECT_EQ(verdict(record_).state, "ambiguous");
-  EXPECT_THAT(verdict(record_).sentence, HasSubstr("only 4 of 12 particles"));
+  EXPECT_THAT(verdict(record_).sentence, HasSubstr("Only 4 of 12 particles"));
   for (PoseRow& p : record_.poses) p.accepted = false, p.reason = "it is too small";
   EXPECT_EQ(verdict(record_).state, "none");
   EXPECT_THAT(verdict(record_).sentence, HasSubstr("it is too small (12)"));
@@ -218,11 +218,13 @@ TEST_F(Sections, StartsHaveTheirStandardErrorsWhereTheRecordDoes) {
 
 TEST_F(Sections, ChannelsHaveAColourEach) {
   smlm::ExtraColumn channel;
-  channel.name = "channel";
+  channel.name = "colour";
   channel.labels = {"Nup107", "WGA"};
   for (std::size_t i = 0; i < record_.result.superparticle.size(); ++i)
     channel.values.push_back(static_cast<double>(i % 2));
   record_.result.superparticle.extra.push_back(channel);
+  EXPECT_THAT(figure(average_section(Subject(record_)), "projection-xy").svg, Not(HasSubstr("on-picture t0")));
+  record_.channel_column = "colour";
   const std::string svg = figure(average_section(Subject(record_)), "projection-xy").svg;
   EXPECT_THAT(svg, HasSubstr("on-picture t0"));
   EXPECT_THAT(svg, HasSubstr(">WGA<"));
