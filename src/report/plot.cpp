@@ -11,13 +11,18 @@ namespace {
 constexpr double kLeft = 46, kRight = 12, kTop = 26, kBottom = 40;
 constexpr double kMargin = 0.05;  // of an axis, beyond the values
 constexpr double kTicks = 5;
+constexpr int kMostDecimals =
+    3;  // of a tick; smaller steps are written in significant digits
+constexpr double kHalfLetter = 3.8;  // units, of the letters below an axis
 
 std::vector<std::pair<double, std::string>> round_ticks(const Axis& axis) {
   const double step = round_step((axis.high - axis.low) / kTicks);
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
   std::vector<std::pair<double, std::string>> ticks;
   for (double k = std::ceil(axis.low / step - 1e-9); k * step <= axis.high + 1e-9 * step; ++k)
-    ticks.emplace_back(k * step, std::abs(axis.high) < 1e6 ? fixed(k * step, decimals) : digits(k * step, 2));
+    ticks.emplace_back(k * step, std::abs(axis.high) < 1e6 && decimals <= kMostDecimals
+                                     ? fixed(k * step, decimals)
+                                     : digits(k * step, 2));
   return ticks;
 }
 }  // namespace
@@ -52,7 +57,8 @@ void Plot::draw_axes() {
   Path marks;
   for (const auto& [value, name] : x_.ticks.empty() ? round_ticks(x_) : x_.ticks) {
     marks.move(across(value), kHeight - kBottom).line(across(value), kHeight - kBottom + 4);
-    drawing_.text("tick", across(value), kHeight - kBottom + 16, name, Anchor::middle);
+    const double most = kWidth - kHalfLetter * static_cast<double>(name.size());  // or it would be cut off
+    drawing_.text("tick", std::min(across(value), most), kHeight - kBottom + 16, name, Anchor::middle);
   }
   marks.move(kLeft, kHeight - kBottom).line(kWidth - kRight, kHeight - kBottom);
   drawing_.path("axis", marks);
