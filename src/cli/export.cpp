@@ -5,6 +5,7 @@
 #include "command.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "polar/results/result_file.hpp"
+#include "record_path.hpp"
 #include "smlm/error.hpp"
 #include "smlm/isolation.hpp"
 
@@ -18,11 +19,10 @@ struct Arguments {
 };
 
 int run(const Arguments& a) {
-  std::error_code unseen;  // whoever opens it says why
-  const bool is_directory = std::filesystem::is_directory(a.result, unseen);
-  const std::string record = is_directory ? a.result + "/results.h5" : a.result;
+  const std::string record = record_path(a.result);
   const std::filesystem::path beside = std::filesystem::path(record).parent_path();
   const std::string output = !a.output.empty() ? a.output : beside.empty() ? "." : beside.string();
+  std::error_code unseen;  // what cannot be seen is no directory to write to
   if (!std::filesystem::is_directory(output, unseen))
     throw smlm::Error(smlm::Fault::io, output, "no such directory", "create it first");
   ResultRecord result = smlm::read_isolated(record, [&] { return read_result_file(record); });

@@ -1,5 +1,7 @@
 #include "polar/pipeline/outputs.hpp"
 
+#include <filesystem>
+
 #include "polar/results/picasso.hpp"
 #include "polar/results/ply.hpp"
 #include "polar/results/preview.hpp"
@@ -82,8 +84,15 @@ std::vector<std::string> export_formats() {
   return names;
 }
 
+std::string report_name(const std::string& directory) {
+  std::error_code unseen;  // a folder that cannot be seen has no better name than the one given
+  const std::filesystem::path whole = std::filesystem::absolute(directory, unseen).lexically_normal();
+  const std::filesystem::path last = whole.has_filename() ? whole.filename() : whole.parent_path().filename();
+  return last.empty() ? directory : last.string();
+}
+
 std::vector<std::string> result_files() {
-  std::vector<std::string> names = {"poses.csv", "results.h5", "summary.json"};
+  std::vector<std::string> names = {"poses.csv", "results.h5", "summary.json", kReportFile};
   for (const OutputFormat& format : output_formats())
     names.insert(names.end(), format.files.begin(), format.files.end());
   return names;

@@ -13,12 +13,14 @@
 #include "halves.hpp"
 #include "input_hash.hpp"
 #include "json_text.hpp"
+#include "machine.hpp"
 #include "output_directory.hpp"
 #include "polar/core/median.hpp"
 #include "polar/model/shipped_weights.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "polar/pipeline/version.hpp"
 #include "polar/registration/prepare.hpp"
+#include "polar/report/page.hpp"
 #include "polar/results/result_file.hpp"
 #include "polar/results/results.hpp"
 #include "polar/results/strangers.hpp"
@@ -249,24 +251,40 @@ Results compute(const RunConfig& config, const std::string& hash, Progress& prog
   return r;
 }
 
-std::vector<std::string> write(const Results& r, const RunConfig& config,
-                               const pipeline::OutputDirectory& directory, Progress& progress) {
+// Poses, record and page: also of a run in which no particle has a pose.
+std::vector<std::string> write_account(const Results& r, const RunConfig& config,
+                                       const pipeline::OutputDirectory& directory,
+                                       const smlm::LocalisationTable& aligned) {
   // Without its summary the directory is not complete: it goes first and comes back last.
   std::filesystem::remove(directory.file(kSummary));
+  std::vector<std::string> written = {"poses.csv"};
+  smlm::write_file_atomically(directory.file("poses.csv"), format_pose_table(pose_rows(r)));
+  const std::vector<std::string>& formats = config.output.formats;
+  const bool record = std::find(formats.begin(), formats.end(), "hdf5") != formats.end();
+  const std::string path = directory.file("results.h5");
+  if (record || config.output.report) write_result_file(path, r, aligned);
+  if (config.output.report) {
+    write_report(path, directory.file(kReportFile), report_name(config.output.directory));
+    written.emplace_back(kReportFile);
+  }
+  if (record)
+    written.emplace_back("results.h5");
+  else
+    std::filesystem::remove(path);  // the page alone was wanted
+  return written;
+}
+
+std::vector<std::string> write(const Results& r, const RunConfig& config,
+                               const pipeline::OutputDirectory& directory, Progress& progress) {
   const smlm::LocalisationTable aligned = superparticle(r);
   RenderOptions render = calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm);
   render.voxel_nm = config.output.voxel_nm;
-  std::vector<std::string> written = {"poses.csv"};
-  smlm::write_file_atomically(directory.file("poses.csv"), format_pose_table(pose_rows(r)));
+  std::vector<std::string> written = write_account(r, config, directory, aligned);
   std::vector<std::string> formats = config.output.formats;
   if (config.output.preview && std::find(formats.begin(), formats.end(), "png") == formats.end())
     formats.emplace_back("png");
   for (const std::string& format : formats) {
-    if (format == "hdf5") {
-      write_result_file(directory.file("results.h5"), r, aligned);
-      written.emplace_back("results.h5");
-      continue;
-    }
+    if (format == "hdf5") continue;  // above
     std::vector<std::string> notes;
     for (const std::string& name : write_format(format, config.output.directory, aligned, render, notes))
       written.push_back(name);
@@ -289,10 +307,19 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   } else if (!checkpoint.resume(progress)) {
     refuse_other_result(directory);
   }
-  const Results r = compute(config, hash.both, progress, checkpoint, engine);
+  Results r = compute(config, hash.both, progress, checkpoint, engine);
+  r.provenance.command = flags.command;
+  r.provenance.machine = pipeline::machine_text();
+  r.provenance.input_file = input_files(config);
+  r.provenance.input_sha256 = hash.sha256;
   if (progress.cancelled()) return {true, checkpoint.flush(), {}};
   for (const std::string& warning : r.registration.warnings) progress.note("warning: " + warning);
   if (accepted_particles(r) == 0) {
+    if (config.output.report) {
+      directory.remove_other_results(write_account(r, config, directory, superparticle(r)));
+      checkpoint.remove();
+      progress.note(directory.file(kReportFile) + " shows the particles");
+    }
     const auto reasons = rejections(r);
     throw smlm::Error(smlm::Fault::numerical, config.files.front(), "no particle could be registered",
                       reasons.empty() ? "" : "most were rejected because: " + reasons.front().second);

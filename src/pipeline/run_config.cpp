@@ -72,6 +72,7 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("formats", c.output.formats);
     s.field("voxel_nm", c.output.voxel_nm);
     s.field("preview", c.output.preview);
+    s.field("report", c.output.report);
     s.field("resolution", c.output.resolution);
   });
 }

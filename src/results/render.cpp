@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "polar/core/constants.hpp"
+#include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/fusion/effective.hpp"
 
@@ -22,12 +23,6 @@ struct Gaussian {
   Eigen::Matrix3d precision;
   double peak;
 };
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 double median_sigma_nm(const smlm::LocalisationTable& table) {
   std::vector<double> smallest;

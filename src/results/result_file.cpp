@@ -134,6 +134,24 @@ void write_superparticle(File& file, const Results& r, const smlm::LocalisationT
   file.write("/input/rejected_rows", rows);
 }
 
+// Rejected particles as the table has them: the superparticle holds the others.
+void write_rejected(File& file, const Results& r) {
+  std::vector<double> position;
+  std::vector<std::int64_t> particle;
+  for (std::size_t i = 0; i < r.particles.particles.size(); ++i) {
+    if (r.registration.view[i].accepted) continue;
+    for (const std::uint32_t row : r.particles.particles[i].rows) {
+      const auto& x = r.particles.table.position_nm[row];
+      position.insert(position.end(), x.begin(), x.end());
+      particle.push_back(static_cast<std::int64_t>(i));
+    }
+  }
+  const std::size_t n = particle.size();
+  write_with_unit(file, "/rejected/position", position, {n, 3}, "nm",
+                  "x, y, z in the table's own coordinates");
+  write_with_unit(file, "/rejected/particle", particle, {n}, "1", "row of /poses");
+}
+
 void write_run(File& file, const Results& r) {
   const Registration& g = r.registration;
   file.make_group("/run");
@@ -141,6 +159,12 @@ void write_run(File& file, const Results& r) {
   file.write_strings("/run/libraries", r.provenance.libraries);
   file.write_strings("/run/configuration", {r.provenance.configuration});
   file.write_strings("/run/input_hash", {r.provenance.input_hash});
+  if (!r.provenance.command.empty()) file.write_strings("/run/command", {r.provenance.command});
+  if (!r.provenance.machine.empty()) file.write_strings("/run/machine", {r.provenance.machine});
+  if (!r.provenance.input_file.empty()) {
+    file.write_strings("/run/input_file", r.provenance.input_file);
+    file.write_strings("/run/input_sha256", r.provenance.input_sha256);
+  }
   if (!g.weights_sha256.empty()) file.write_string_attribute("/run", "weights_sha256", g.weights_sha256);
   file.write_attribute("/run", "seed", r.provenance.seed);
   file.write_attribute("/run", "rounds", static_cast<std::int32_t>(g.rounds));
@@ -228,6 +252,7 @@ void write_result_file(const std::string& path, const Results& results,
   write_poses(file, results);
   write_template(file, results);
   write_superparticle(file, results, superparticle);
+  write_rejected(file, results);
   write_run(file, results);
   if (results.registration.symmetry)
     write_symmetry(file, *results.registration.symmetry, results.normalisation.scale_nm);

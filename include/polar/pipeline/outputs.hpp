@@ -22,6 +22,10 @@ const std::vector<OutputFormat>& output_formats();
 /// Their names.
 std::vector<std::string> export_formats();
 
+/// The page, and what it is called after: the folder of a result.
+constexpr const char* kReportFile = "report.html";
+std::string report_name(const std::string& directory);
+
 /// Every name in a result directory that a run may have written.
 std::vector<std::string> result_files();
 

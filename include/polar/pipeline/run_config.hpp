@@ -16,6 +16,7 @@ struct OutputOptions {
   std::vector<std::string> formats = {"hdf5", "vtkhdf", "csv"};
   double voxel_nm = 0;  // of template.hdf and preview.png; 0: half the median uncertainty
   bool preview = true;  // preview.png
+  bool report = true;   // report.html, the page to look at
   /// none | halves: registers two halves of the particles independently as well, and two of pure noise, and
   /// reports their Fourier shell correlation (twice the time again).
   std::string resolution = "none";
