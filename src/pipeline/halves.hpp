@@ -16,8 +16,8 @@ namespace polar::pipeline {
 ResolutionReport resolve_halves(const smlm::ParticleSet& particles, const RegistrationOptions& options,
                                 Progress& progress, Checkpoint& checkpoint, const Engine& engine);
 
-/// Which particles are in the second half. Copies of a measurement (smlm::find_repetitions) are in the same one:
-/// two halves that share data agree on anything.
+/// Which particles are in the second half. Copies of a measurement (smlm::find_repetitions) are in the same
+/// one: two halves that share data agree on anything.
 std::vector<bool> second_half(const smlm::ParticleSet& set, std::uint64_t seed);
 
 }  // namespace polar::pipeline

@@ -29,7 +29,8 @@ Volume drawn(const LocalisationTable& table, const RenderOptions& options, Notes
   return volume;
 }
 
-void vtkhdf(const std::string& folder, const LocalisationTable& table, const RenderOptions& options, Notes& notes) {
+void vtkhdf(const std::string& folder, const LocalisationTable& table, const RenderOptions& options,
+            Notes& notes) {
   write_points_vtkhdf(folder + "aligned.hdf", table);
   write_volume_vtkhdf(folder + "template.hdf", drawn(table, options, notes));
 }
@@ -38,11 +39,13 @@ void csv(const std::string& folder, const LocalisationTable& table, const Render
   smlm::write_file_atomically(folder + "aligned.csv", format_table_csv(table));
 }
 
-void png(const std::string& folder, const LocalisationTable& table, const RenderOptions& options, Notes& notes) {
+void png(const std::string& folder, const LocalisationTable& table, const RenderOptions& options,
+         Notes& notes) {
   write_preview_png(folder + "preview.png", drawn(table, options, notes));
 }
 
-void tiff(const std::string& folder, const LocalisationTable& table, const RenderOptions& options, Notes& notes) {
+void tiff(const std::string& folder, const LocalisationTable& table, const RenderOptions& options,
+          Notes& notes) {
   write_imagej_tiff(folder + "template.tif", drawn(table, options, notes));
 }
 
@@ -54,7 +57,8 @@ void picasso(const std::string& folder, const LocalisationTable& table, const Re
   write_picasso(folder + "aligned.hdf5", table, picasso_shift_nm(table));
   const std::vector<std::int32_t> groups = picasso_groups(table.particle_names);
   std::size_t renamed = 0;
-  for (std::size_t i = 0; i < groups.size(); ++i) renamed += std::to_string(groups[i]) != table.particle_names[i];
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    renamed += std::to_string(groups[i]) != table.particle_names[i];
   if (renamed > 0) {
     notes.push_back("Picasso's groups are whole numbers: " + std::to_string(renamed) + " of " +
                     std::to_string(groups.size()) + " particles got one, which aligned_particles.csv lists");

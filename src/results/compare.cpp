@@ -84,8 +84,10 @@ std::vector<Difference> differences(const std::vector<PoseRow>& estimate, const 
   constexpr std::size_t fewest = 2;
   if (shared_names(estimate, truth) < fewest) {
     const auto estimate_by_number = by_number(estimate), truth_by_number = by_number(truth);
-    if (estimate_by_number && truth_by_number && shared_names(*estimate_by_number, *truth_by_number) >= fewest) {
-      out.note = "ids are matched as numbers: '" + truth.front().particle + "' of the truth is spelt otherwise in the "
+    if (estimate_by_number && truth_by_number &&
+        shared_names(*estimate_by_number, *truth_by_number) >= fewest) {
+      out.note = "ids are matched as numbers: '" + truth.front().particle +
+                 "' of the truth is spelt otherwise in the "
                  "estimate";
       return differences(*estimate_by_number, *truth_by_number, out);
     }
@@ -231,10 +233,10 @@ Comparison compare_poses(const std::vector<PoseRow>& estimate, const std::vector
     throw smlm::Error(smlm::Fault::input, "evaluation",
                       std::to_string(d.size()) + " of " + std::to_string(out.n_truth) +
                           " true particles have an estimated pose" +
-                          (estimate.empty() || truth.empty() ? ""
-                                                             : " (ids are '" + truth.front().particle +
-                                                                   "', ... in the truth and '" +
-                                                                   estimate.front().particle + "', ... in the estimate)"),
+                          (estimate.empty() || truth.empty()
+                               ? ""
+                               : " (ids are '" + truth.front().particle + "', ... in the truth and '" +
+                                     estimate.front().particle + "', ... in the estimate)"),
                       "at least two are needed; are both tables of the same particles?");
   std::vector<double> angle = pair_angles_deg(d, group, options.seed);
   std::sort(angle.begin(), angle.end());

@@ -101,7 +101,8 @@ void write_picasso(const std::string& path, const smlm::LocalisationTable& table
   const std::vector<float> one(n, 1.0f);
   const std::vector<std::int32_t> numbers = picasso_groups(table.particle_names);
   std::vector<std::int32_t> group;
-  for (const std::int64_t p : table.particle) group.push_back(p < 0 ? -1 : numbers[static_cast<std::size_t>(p)]);
+  for (const std::int64_t p : table.particle)
+    group.push_back(p < 0 ? -1 : numbers[static_cast<std::size_t>(p)]);
   using smlm::h5::table_column;
   std::vector<smlm::h5::TableColumn> columns = {
       table_column("frame", frame),     table_column("x", x),     table_column("y", y),

@@ -26,8 +26,8 @@ std::vector<std::size_t> elements(bool is_diagonal, bool planar) {
   return planar ? std::vector<std::size_t>{0, 1, 3} : std::vector<std::size_t>{0, 1, 2, 3, 4, 5};
 }
 
-// A kept column's heading, so that no reader takes it for a position or a particle of this table, and none stands
-// twice.
+// A kept column's heading, so that no reader takes it for a position or a particle of this table, and none
+// stands twice.
 std::string kept_heading(const smlm::ExtraColumn& column, std::set<std::string>& used) {
   std::string name = results::heading(column);
   const auto match = smlm::match_heading(smlm::parse_heading(name));

@@ -29,8 +29,8 @@ std::string report_name(const std::string& directory);
 /// Every name in a result directory that a run may have written.
 std::vector<std::string> result_files();
 
-/// Writes the files of one of export_formats() into `directory`; returns their names, and adds to `notes` what the
-/// format could not take as it is. Throws smlm::Error.
+/// Writes the files of one of export_formats() into `directory`; returns their names, and adds to `notes`
+/// what the format could not take as it is. Throws smlm::Error.
 std::vector<std::string> write_format(const std::string& format, const std::string& directory,
                                       const smlm::LocalisationTable& superparticle,
                                       const RenderOptions& render, std::vector<std::string>& notes);

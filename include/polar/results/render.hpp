@@ -16,8 +16,8 @@ struct RenderOptions {
   double voxel_nm = 0;  // edge of a voxel; 0: half the median of the smallest standard deviations
   /// No axis gets more voxels than this: the voxel grows instead.
   std::size_t most_voxels_per_axis = 256;
-  /// sigma_eff^2 = factor^2 sigma^2 + extra^2 across and along the axis of a particle's uncertainties: draws the
-  /// precision that the data showed (Registration::calibration), not the one that the table states.
+  /// sigma_eff^2 = factor^2 sigma^2 + extra^2 across and along the axis of a particle's uncertainties: draws
+  /// the precision that the data showed (Registration::calibration), not the one that the table states.
   double lateral_factor = 1, axial_factor = 1, lateral_extra_nm = 0, axial_extra_nm = 0;
 };
 
@@ -42,7 +42,8 @@ RenderOptions calibrated_rendering(const Calibration& calibration, double scale_
 /// spread. The same bits for any number of threads. An empty table gives one empty voxel.
 Volume render(const smlm::LocalisationTable& table, const RenderOptions& options = {});
 
-/// Renders into a grid that is given (size, origin, voxel, planar; its density is replaced): two tables in one box.
+/// Renders into a grid that is given (size, origin, voxel, planar; its density is replaced): two tables in
+/// one box.
 Volume render_into(Volume grid, const smlm::LocalisationTable& table, const RenderOptions& options = {});
 
 }  // namespace polar

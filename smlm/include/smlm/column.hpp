@@ -84,8 +84,8 @@ struct ColumnMatch {
 };
 std::optional<ColumnMatch> match_heading(const Heading& heading);
 
-/// A name made of words for an uncertainty (precision, error, crlb, std, var, sigma, ...), an axis (x, y, z, xy,
-/// lateral, axial) and what goes without saying (loc, position, a unit): what it is an uncertainty of.
+/// A name made of words for an uncertainty (precision, error, crlb, std, var, sigma, ...), an axis (x, y, z,
+/// xy, lateral, axial) and what goes without saying (loc, position, a unit): what it is an uncertainty of.
 std::optional<ColumnMatch> uncertainty_named(const std::string& normalised_name);
 
 /// Whether some word of the name speaks of an uncertainty, whatever else it says.

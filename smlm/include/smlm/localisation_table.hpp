@@ -41,7 +41,7 @@ struct LocalisationTable {
   std::vector<std::string> formats;  // the reader of each file
   std::vector<ExtraColumn> extra;
   std::vector<Rejection> rejected;
-  std::vector<std::string> mapping;   // one line a used column: "x <- 'x [nm]' (nm)"
+  std::vector<std::string> mapping;  // one line a used column: "x <- 'x [nm]' (nm)"
   /// What the rows of no particle said instead, and how often: "-1", "", "nan".
   std::vector<std::pair<std::string, std::uint64_t>> unassigned;
   /// Keys of the input section that had a say in how the table was read.

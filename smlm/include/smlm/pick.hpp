@@ -20,10 +20,11 @@ using Centre = std::array<double, 2>;  // x, y in nm
 
 struct ReadOptions;
 
-/// The centres in a table that any reader understands, or in Picasso's pick regions (.yaml, in camera pixels). What
-/// has no unit is in `options.unit`, else in the unit of the picked table's own positions; what that decided is
-/// added to the table's warnings and keys.
-std::vector<Centre> read_centres(const std::string& path, const ReadOptions& options, LocalisationTable& table);
+/// The centres in a table that any reader understands, or in Picasso's pick regions (.yaml, in camera
+/// pixels). What has no unit is in `options.unit`, else in the unit of the picked table's own positions; what
+/// that decided is added to the table's warnings and keys.
+std::vector<Centre> read_centres(const std::string& path, const ReadOptions& options,
+                                 LocalisationTable& table);
 
 /// Local maxima of the number of localisations within the radius, found by mean shift from a grid of that
 /// size, densest first, then those left out that lie closer than two radii to a denser one. In ascending x.
@@ -31,8 +32,8 @@ std::vector<Centre> find_centres(const LocalisationTable& table, const PickOptio
 
 /// Gives every localisation to the nearest centre within the radius, or to none. Particles are called "1",
 /// "2", ... in the order of the centres; what the table said about particles is replaced. Picks without any
-/// localisation, and picks that many localisations lie right outside of, are said; Error(input) where every pick is
-/// empty.
+/// localisation, and picks that many localisations lie right outside of, are said; Error(input) where every
+/// pick is empty.
 void pick_particles(LocalisationTable& table, const std::vector<Centre>& centres, double radius_nm);
 
 }  // namespace smlm

@@ -11,9 +11,9 @@ namespace smlm {
 
 /// Where a quantity stands in a table whose header says nothing, or says it wrongly.
 struct ColumnMapping {
-  std::string name;          // the column's header, or its 1-based number in a table without header
-  std::string unit;          // nm, um, mm, m, px or angstrom (squared for variances); empty: as the header says
-  std::string kind;          // std | variance, of uncertainties; empty: as the header says, else std
+  std::string name;  // the column's header, or its 1-based number in a table without header
+  std::string unit;  // nm, um, mm, m, px or angstrom (squared for variances); empty: as the header says
+  std::string kind;  // std | variance, of uncertainties; empty: as the header says, else std
 };
 
 struct ReadOptions {
@@ -29,8 +29,8 @@ struct ReadOptions {
   /// What uncertainties are that nothing tells the kind of (.mat files): std | variance; empty: std, with a
   /// warning where files of that kind hold either.
   std::string sigma_kind;
-  /// Whether z is ignored, so that everything is registered in the plane; without it a table is planar where its
-  /// z says nothing (absent, empty, or the same everywhere).
+  /// Whether z is ignored, so that everything is registered in the plane; without it a table is planar where
+  /// its z says nothing (absent, empty, or the same everywhere).
   bool planar = false;
   /// Unit of Picasso's lpz, which its versions disagree on: nm | px.
   std::string lpz_unit = "nm";
@@ -39,8 +39,8 @@ struct ReadOptions {
   std::string particles = "column";
   /// How, where particles are picked.
   PickOptions pick;
-  /// Particle ids that mean "none", beside those that always do: negative numbers, empty, nan, NA, None, null.
-  /// Empty: 0 in SMAP's sitenumbers, else no other.
+  /// Particle ids that mean "none", beside those that always do: negative numbers, empty, nan, NA, None,
+  /// null. Empty: 0 in SMAP's sitenumbers, else no other.
   std::vector<std::string> unassigned_particle;
   /// Leave out rows whose position or uncertainty cannot be used, and count them; else they are an error.
   bool drop_nonfinite = false;

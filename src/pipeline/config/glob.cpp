@@ -14,7 +14,8 @@ constexpr int kDeepest = 64;
 // Walks down the parts of a pattern.
 class Walk {
  public:
-  Walk(const fs::path& pattern, int flags) : parts_(pattern.begin(), pattern.end()), flags_(flags | FNM_PERIOD) {}
+  Walk(const fs::path& pattern, int flags)
+      : parts_(pattern.begin(), pattern.end()), flags_(flags | FNM_PERIOD) {}
 
   std::vector<std::string> paths() {
     from({}, 0, 0);
@@ -29,7 +30,8 @@ class Walk {
   static std::vector<fs::path> children(const fs::path& folder) {
     std::error_code unreadable;
     std::vector<fs::path> all;
-    for (fs::directory_iterator it(folder, unreadable), end; !unreadable && it != end; it.increment(unreadable))
+    for (fs::directory_iterator it(folder, unreadable), end; !unreadable && it != end;
+         it.increment(unreadable))
       all.push_back(it->path());
     return all;
   }

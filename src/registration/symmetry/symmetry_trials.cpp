@@ -185,7 +185,8 @@ SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions
   std::uint64_t key = 2000;
   const auto add = [&](Trial t) {
     trials.push_back(std::move(t));
-    progress.step("symmetry", static_cast<int>(++key - 2000), static_cast<int>(key - 2000) + 1);
+    ++key;
+    progress.step("symmetry", static_cast<int>(trials.size()), static_cast<int>(trials.size()) + 1);
   };
   for (const SymmetryFrame& f : all.hinted(cyclic)) {
     if (progress.cancelled()) return out;
