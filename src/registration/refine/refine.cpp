@@ -76,7 +76,9 @@ void Refiner::sweep_blind(Fit& fit, int sweeps) const {
   sweep(first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations)), fit, sweeps, false);
 }
 
-void Refiner::search(Fit& fit) const {
+void Refiner::search(Fit& fit) const { search(problem_.sampled, fit); }
+
+void Refiner::search(const Subsets& subsets, Fit& fit) const {
   NoiseModel noise = fit.noise;
   noise.width = std::sqrt(std::max(noise.width * noise.width,
                                    options_.search_width * options_.search_width -
@@ -90,7 +92,7 @@ void Refiner::search(Fit& fit) const {
   o.grid.step = static_cast<float>(options_.step);
   const Eigen::Matrix3f turn = grid_turn(
       problem_.planar(), KeyedRandom(problem_.seed, static_cast<std::uint64_t>(fit.rounds), kTurnStage));
-  SearchAgainReport report = search_again(problem_.views, problem_.axes, problem_.sampled, fit.mixture, noise,
+  SearchAgainReport report = search_again(problem_.views, problem_.axes, subsets, fit.mixture, noise,
                                           grid_, turn, o, fit.pose);
   fit.margin = std::move(report.margin);
   fit.escaped = static_cast<int>(report.escaped.size());
@@ -114,9 +116,12 @@ Evidence Refiner::held_out(const Fit& fit) const {
 
 Evidence Refiner::judge(const Fit& fit) const { return held_out(blind(fit)); }
 
-Evidence Refiner::judge_cloud(const Fit& fit) const {
-  Fit cloud = blind(fit);
-  const Mixture& m = cloud.mixture;
+Refiner::AgainstCloud Refiner::judge_against_cloud(Fit fit) const {
+  fit = blind(std::move(fit));
+  search(problem_.fitted, fit);
+  fit = blind(std::move(fit));
+  Fit cloud = fit;
+  const Mixture& m = fit.mixture;
   const Eigen::Index turns =
       std::clamp(kCloudCentres / std::max<Eigen::Index>(1, m.size()), Eigen::Index{8}, Eigen::Index{256});
   const Eigen::Vector3d centre = m.centre.cast<double>() * m.weight.cast<double>();
@@ -133,7 +138,7 @@ Evidence Refiner::judge_cloud(const Fit& fit) const {
   }
   sort_into_blocks(turned);
   cloud.mixture = std::move(turned);
-  return held_out(cloud);
+  return {held_out(fit), held_out(cloud)};
 }
 
 Fit Refiner::rounds(Fit fit, Progress& progress) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../data/evidence.hpp"
+#include "polar/registration/engine_options.hpp"
 #include "polar/registration/registration.hpp"
 
 namespace polar {
