@@ -182,7 +182,9 @@ void rotate(const float* x, const float* y, const float* z, int n, const float* 
 // The values at 2-byte places, one a lane. A gather reads the two bytes after a place too.
 inline I gathered(const short* value, I voxel) {
 #if defined(__AVX512F__)
-  const __m512i pair = _mm512_i32gather_epi32(reinterpret_cast<const __m512i&>(voxel), value, 2);
+  // All lanes are read; the masked form alone does not leave its source undefined.
+  const __m512i pair = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), 0xffff,
+                                                   reinterpret_cast<const __m512i&>(voxel), value, 2);
   return reinterpret_cast<const I&>(pair) << 16 >> 16;
 #elif defined(__AVX2__)
   const __m256i pair =
