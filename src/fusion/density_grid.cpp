@@ -47,7 +47,8 @@ void convolve(const std::vector<float>& in, const std::vector<float>& tap, std::
 }  // namespace
 
 VoxelFrame::VoxelFrame(double reach, double voxel_size, bool planar) {
-  const int across = (static_cast<int>(std::ceil(2 * reach / voxel_size)) + 3) / 4 * 4;  // rows of 16 in a slab
+  const int across =
+      (static_cast<int>(std::ceil(2 * reach / voxel_size)) + 3) / 4 * 4;  // rows of 16 in a slab
   dim[0] = dim[1] = across, dim[2] = planar ? 1 : across;
   voxel = static_cast<float>(voxel_size);
   const float half = 0.5f * voxel * static_cast<float>(across - 1);
