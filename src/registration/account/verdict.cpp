@@ -17,7 +17,11 @@ std::string text(const char* pattern, double a, double b) {
 
 void judge_registration(const Evidence& cloud, const Evidence& evidence, const VerdictOptions& options,
                         Registration& out) {
-  const Comparison c = compare(cloud, evidence);
+  // A localisation that the sharp template misses altogether must not outweigh all that it explains.
+  Evidence bounded = evidence;
+  for (std::size_t i = 0; i < bounded.size(); ++i)
+    bounded[i] = cloud[i] + std::clamp(evidence[i] - cloud[i], -options.most_gain, options.most_gain);
+  const Comparison c = compare(cloud, bounded);
   out.structure_gain = c.gain, out.structure_gain_std = c.standard_error;
   if (!c.better_by(options.cloud_standard_errors)) {
     out.verdict = Verdict::none;
