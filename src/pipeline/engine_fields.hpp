@@ -104,6 +104,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("most_rotation_std_deg", o.verdict.most_rotation_std_deg);
     s.field("most_outliers", o.verdict.most_outliers);
     s.field("draws", o.verdict.draws);
+    s.field("doubtful_standard_errors", o.verdict.doubtful_standard_errors);
     s.field("cloud_standard_errors", o.verdict.cloud_standard_errors);
     s.field("most_gain", o.verdict.most_gain);
     s.field("least_accepted_share", o.verdict.least_accepted_share);

@@ -244,7 +244,7 @@ class FaultyIo(PolarCase):
         for name, content in whole.items():
             self.assertEqual((self.folder / "results" / name).read_bytes(), content, (fault, nth, name))
         left = {path.name for path in (self.folder / "results").iterdir()}
-        self.assertLessEqual(left, {*whole, "report.html", "summary.json", "checkpoint.1", "checkpoint.2"}, (fault, nth))
+        self.assertLessEqual(left, {*whole, "report.html", "results.h5", "summary.json", "checkpoint.1", "checkpoint.2"}, (fault, nth))
         if done.returncode == 0:
             self.assertIn("summary.json", left)
             return False

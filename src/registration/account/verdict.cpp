@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "../data/template_tools.hpp"
+
 namespace polar {
 
 namespace {
@@ -23,27 +25,31 @@ void judge_registration(const Evidence& cloud, const Evidence& evidence, const V
     bounded[i] = cloud[i] + std::clamp(evidence[i] - cloud[i], -options.most_gain, options.most_gain);
   const Comparison c = compare(cloud, bounded);
   out.structure_gain = c.gain, out.structure_gain_std = c.standard_error;
-  if (!c.better_by(options.cloud_standard_errors)) {
+  if (!c.better_by(options.doubtful_standard_errors)) {
     out.verdict = Verdict::none;
     out.verdict_reason =
         text("no structure: localisations kept apart are explained by %.3f +- %.3f nat better than by a cloud",
              c.gain, c.standard_error);
-    for (RegisteredView& v : out.view)
-      if (v.accepted) {
-        v.accepted = false;
-        v.reason = "the particles have no structure in common that explains localisations kept apart";
-      }
+    for (RegisteredView& v : out.view) {
+      if (v.n_used < kFewestLocalisations) continue;  // it has a reason of its own
+      v.accepted = false;
+      v.reason = "the particles have no structure in common that explains localisations kept apart";
+    }
     return;
   }
   double accepted = 0;
   for (const RegisteredView& v : out.view) accepted += v.accepted ? 1 : 0;
   const double share = accepted / static_cast<double>(std::max<std::size_t>(1, out.view.size()));
-  out.verdict = share >= options.least_accepted_share ? Verdict::found : Verdict::ambiguous;
+  const bool clear = c.better_by(options.cloud_standard_errors);
+  const bool posed = share >= options.least_accepted_share;
+  out.verdict = clear && posed ? Verdict::found : Verdict::ambiguous;
   out.verdict_reason =
-      text("localisations kept apart are explained by %.2f +- %.2f nat better than by a cloud", c.gain,
-           c.standard_error) +
-      text(out.verdict == Verdict::found ? "; the pose of %.0f %% of the particles is determined"
-                                         : ", but the pose of only %.0f %% of the particles is determined",
+      text(clear ? "localisations kept apart are explained by %.2f +- %.2f nat better than by a cloud"
+                 : "localisations kept apart are explained by only %.2f +- %.2f nat better than by a cloud: they may "
+                   "have no structure in common",
+           c.gain, c.standard_error) +
+      text(posed ? "; the pose of %.0f %% of the particles is determined"
+                 : "; the pose of only %.0f %% of the particles is determined",
            100 * share, 0);
 }
 

@@ -51,6 +51,8 @@ class Trials {
   std::vector<SymmetryFrame> hinted(const std::string& asked) {
     std::vector<SymmetryFrame> out = {{"C1", {}, 1}};
     SymmetryFrame axial = best_frame(similarity_, kAnyTurn, o_.hint);
+    // In the plane the axis is known, and a resolved template must not be moved to look alike under a wrong turn.
+    if (problem_.planar()) axial.canonical_from_template = {Eigen::Matrix3d::Identity(), -similarity_.centroid()};
     const bool is_axial = problem_.planar() || axial.similarity >= o_.axial_hint;
     if (is_axial) {
       std::vector<SoftPose> pose = in_frame(axial.canonical_from_template).best;
