@@ -44,7 +44,7 @@ TEST(ReportRecord, HoldsWhatTheRunWrote) {
   EXPECT_EQ(r.command, "polar run 'my pores.yaml'");
   EXPECT_EQ(r.input_sha256[0], std::string(64, 'a'));
   EXPECT_EQ(r.starts.size(), 2u);
-  EXPECT_TRUE(std::isnan(r.starts[0].held_out_std));
+  EXPECT_EQ(r.starts[0].held_out_std, results.registration.starts[0].gain_std);
   EXPECT_TRUE(r.resolution.has_value());
   EXPECT_TRUE(r.history.empty());
 }
