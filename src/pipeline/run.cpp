@@ -193,7 +193,9 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
                             double seconds) {
   const Registration& g = r.registration;
   nlohmann::json timings = nlohmann::json::array(), starts = nlohmann::json::array();
-  for (const auto& t : g.timings) timings.push_back({{"stage", t.stage}, {"seconds", t.seconds}});
+  for (const auto& t : g.timings)
+    timings.push_back(
+        {{"stage", t.stage}, {"seconds", t.seconds}, {"processor_seconds", t.processor_seconds}});
   for (const StartReport& s : g.starts)
     starts.push_back({{"name", s.name},
                       {"held_out_log_likelihood", s.held_out_log_likelihood},

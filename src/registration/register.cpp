@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "data/template_tools.hpp"
 #include "polar/core/constants.hpp"
@@ -29,15 +30,18 @@ constexpr double kLargestFactor = 1.5;  // of a, either way, before a warning
 
 class Stopwatch {
  public:
-  double lap() {
+  Registration::Timing lap(const char* stage) {
     const auto now = std::chrono::steady_clock::now();
-    const double s = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return s;
+    const std::clock_t busy = std::clock();
+    Registration::Timing out{stage, std::chrono::duration<double>(now - last_).count(),
+                             static_cast<double>(busy - busy_) / CLOCKS_PER_SEC};
+    last_ = now, busy_ = busy;
+    return out;
   }
 
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::clock_t busy_ = std::clock();
 };
 
 void warn_about_calibration(const Calibration& c, std::vector<std::string>& warnings) {
@@ -95,7 +99,7 @@ class Run {
   }
 
  private:
-  void timed(const char* stage) { out_.timings.push_back({stage, watch_.lap()}); }
+  void timed(const char* stage) { out_.timings.push_back(watch_.lap(stage)); }
   Registration cancelled() {
     out_.stopped_because = "cancelled";
     out_.verdict_reason = "cancelled";
@@ -265,7 +269,7 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
     const Problems problems = make_problems(views, options.engine.evidence, options.seed);
     Registration out = latent_method(problems.plain, *model.autoencoder, options, progress);
     out.weights_sha256 = model.weights_sha256;
-    out.timings.push_back({"latent", watch.lap()});
+    out.timings.push_back(watch.lap("latent"));
     return out;
   }
   return Run(views, options, progress, checkpoint).from_nothing();

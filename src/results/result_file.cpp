@@ -200,11 +200,12 @@ void write_run(File& file, const Results& r) {
   warnings.insert(warnings.end(), g.warnings.begin(), g.warnings.end());
   file.write_strings("/run/warnings", warnings);
   std::vector<std::string> stage, start;
-  std::vector<double> seconds, held_out, gain, gain_std;
+  std::vector<double> seconds, processor_seconds, held_out, gain, gain_std;
   std::vector<std::uint8_t> won;
   for (const auto& t : g.timings) {
     stage.push_back(t.stage);
     seconds.push_back(t.seconds);
+    processor_seconds.push_back(t.processor_seconds);
   }
   for (const StartReport& s : g.starts) {
     start.push_back(s.name);
@@ -214,6 +215,7 @@ void write_run(File& file, const Results& r) {
   }
   file.write_strings("/run/timings/stage", stage);
   file.write("/run/timings/seconds", seconds);
+  file.write("/run/timings/processor_seconds", processor_seconds);
   file.write_strings("/run/starts/name", start);
   file.write("/run/starts/held_out_log_likelihood", held_out);
   file.write("/run/starts/gain", gain);

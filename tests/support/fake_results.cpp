@@ -36,7 +36,7 @@ Results perfect_results(const Simulation& simulation, const Structure& structure
       structure.site_nm.cols(), 1.0 / static_cast<double>(structure.site_nm.cols()));
   r.registration.fused.width = 0.02;
   r.registration.starts = {{"random 1", -1.0, false}, {"imaged", -0.5, true}};
-  r.registration.timings = {{"search", 1.25}};
+  r.registration.timings = {{"search", 1.25, 2.5}};
   r.registration.converged = true;
   r.registration.stopped_because = "no particle moved";
   r.provenance = {"polar test", "input:\n  files: [a.csv]\n", 7, "hash", {"HDF5"}};

@@ -83,7 +83,7 @@ struct Registration {
   std::string weights_sha256;  // of the autoencoder, where it took part; else empty
   struct Timing {
     std::string stage;
-    double seconds = 0;
+    double seconds = 0, processor_seconds = 0;  // of all threads of the process
   };
   std::vector<Timing> timings;
 };

@@ -95,6 +95,7 @@ TEST_F(ResultsOfPores, RecordReadsBack) {
   EXPECT_FALSE(std::isnan(rotation[0]));
   EXPECT_EQ(h5.read_string_attribute("/poses/translation", "unit"), "nm");
   EXPECT_EQ(h5.read<double>("/run/timings/seconds"), std::vector<double>{1.25});
+  EXPECT_EQ(h5.read<double>("/run/timings/processor_seconds"), std::vector<double>{2.5});
 }
 
 TEST_F(ResultsOfPores, OtherFilesAreNoRecords) {
