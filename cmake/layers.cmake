@@ -24,6 +24,7 @@ endfunction()
 
 # A kernel written once on vector extensions and compiled once per instruction set; the
 # namespace each copy lives in comes from POLAR_ISA, the choice is made at run time.
+# Further arguments are compiler options.
 function(polar_kernel target source)
   get_filename_component(stem ${source} NAME_WE)
   set(variants portable)
@@ -38,7 +39,7 @@ function(polar_kernel target source)
     file(GENERATE OUTPUT ${copy} CONTENT
       "#define POLAR_ISA ${variant}\n#include \"${CMAKE_CURRENT_SOURCE_DIR}/${source}\"\n")
     set_source_files_properties(${copy} PROPERTIES
-      COMPILE_OPTIONS "${flags_${variant}};-O3;-ffp-contract=fast;-fno-math-errno;-fno-trapping-math;-Wno-psabi"
+      COMPILE_OPTIONS "${flags_${variant}};-O3;-ffp-contract=fast;-fno-math-errno;-fno-trapping-math;-Wno-psabi;${ARGN}"
       OBJECT_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
     target_sources(${target} PRIVATE ${copy})
   endforeach()

@@ -41,8 +41,9 @@ Subsets at_most(const Subsets& held_out, std::size_t most) {
   return few;
 }
 
-// Do lateral and axial uncertainties differ enough to be calibrated apart?
-bool has_axis(const Views& views, const std::vector<Eigen::Vector3f>& axes) {
+}  // namespace
+
+bool has_axial_noise(const Views& views, const std::vector<Eigen::Vector3f>& axes) {
   if (views.planar) return false;
   std::vector<float> ratio;
   for (std::size_t i = 0; i < views.view.size(); ++i) {
@@ -52,8 +53,6 @@ bool has_axis(const Views& views, const std::vector<Eigen::Vector3f>& axes) {
   }
   return !ratio.empty() && upper_median(std::move(ratio)) > kAxisRatio;
 }
-
-}  // namespace
 
 CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3f>& axes,
                             const Subsets& held_out, const Mixture& mixture, const std::vector<Pose>& poses,
@@ -88,7 +87,7 @@ CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3
   };
   Parameters p;
   first(start.lateral_factor, start.lateral_extra, p);
-  if (has_axis(views, axes)) first(start.axial_factor, start.axial_extra, p);
+  if (has_axial_noise(views, axes)) first(start.axial_factor, start.axial_extra, p);
   return {model(nelder_mead(p, {kFirstStep, kTolerance, kMostEvaluations}, cost), start)};
 }
 

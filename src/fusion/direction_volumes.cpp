@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mixture_kernel_choice.hpp"
+#include "kernel_choice.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/spiral.hpp"
@@ -149,7 +149,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
       const Eigen::Vector3f at = (mixture.centre.col(k) - origin_) / voxel_;
       mixture_kernel().add_gaussian(density.data(), dim_, gaussian.at(at, amplitude));
     }
-    mixture_kernel().quantise_log(density.data(), static_cast<int>(stride_), zero_, scale_,
+    lookup_kernel().quantise_log(density.data(), static_cast<int>(stride_), zero_, scale_,
                                   value_.data() + v * stride_);
   });
 }
@@ -174,7 +174,7 @@ int DirectionVolumes::direction_of(const SearchView& view, const Eigen::Matrix3f
 void DirectionVolumes::scores(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
                               const std::vector<Eigen::Vector3f>& translation, float* score) const {
   constexpr std::size_t kBatch = kernel::kMostPoints, kShifts = 64;  // localisations and shifts at a time
-  const kernel::MixtureKernel& kernel = mixture_kernel();
+  const kernel::LookupKernel& kernel = lookup_kernel();
   const float inverse = 1 / voxel_;
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r = rotation * inverse;
   float u[kBatch], v[kBatch], w[kBatch];

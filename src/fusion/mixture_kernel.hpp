@@ -47,7 +47,6 @@ struct VoxelGaussian {
 };
 
 constexpr int kMostRows = 64;     // voxels along y of a volume, at most
-constexpr int kMostPoints = 256;  // of one call of nearest_sums: what it keeps fits the first-level cache
 
 struct MixtureKernel {
   // density[j] of each localisation.
@@ -61,16 +60,6 @@ struct MixtureKernel {
   // volume += amplitude exp(-q / 2) at the voxels within reach; x is the fastest of the three sizes `dim`.
   // The 15 numbers after a row are rewritten as they are.
   void (*add_gaussian)(float* volume, const int* dim, const VoxelGaussian&);
-  // out[i] = round(scale * (ln(in[i]) - zero)) clipped to int16.
-  void (*quantise_log)(const float* in, int n, float zero, float scale, short* out);
-  // u, v, w = rotation x point; rotation is row-major. Arrays are padded to a multiple of 16.
-  void (*rotate)(const float* x, const float* y, const float* z, int n, const float* rotation, float* u,
-                 float* v, float* w);
-  // sum[s] += sum over i < n of the value at the voxel nearest to (u, v, w)_i + offset s, all in voxels;
-  // points outside take the border's voxel. `offset` holds three numbers a shift. Arrays are padded to a
-  // multiple of 16; n is at most kMostPoints, a volume has at most 2^24 voxels and one number after them.
-  void (*nearest_sums)(const float* u, const float* v, const float* w, int n, const float* offset, int shifts,
-                       const int* dim, const short* value, long long* sum);
   // The centres within reach of one localisation: their indices, in whole blocks, and their weighted
   // densities. Returns how many blocks; both arrays have room for all centres.
   int (*weighted_densities)(const Centres&, const Localisation&, int* index, float* density);

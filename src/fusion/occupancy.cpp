@@ -7,7 +7,7 @@
 
 #include "blocked_mixture.hpp"
 #include "fusion_data_impl.hpp"
-#include "mixture_kernel_choice.hpp"
+#include "kernel_choice.hpp"
 #include "polar/core/parallel.hpp"
 
 namespace polar {

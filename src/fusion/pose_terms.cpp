@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "mixture_kernel_choice.hpp"
+#include "kernel_choice.hpp"
 
 namespace polar {
 

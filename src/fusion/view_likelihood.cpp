@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mixture_kernel_choice.hpp"
+#include "kernel_choice.hpp"
 #include "polar/core/so3.hpp"
 
 namespace polar {

@@ -73,10 +73,14 @@ std::vector<Pose> poses_of(const std::vector<SoftPose>& soft) {
   return out;
 }
 
+void dbg(const char* s, const Fit& f) {
+  if (getenv("DBG")) fprintf(stderr, "%s evidence %.4f width %.4f lat %.3f+%.4f ax %.3f+%.4f centres %d out %.3f occ %.2f esc %d\n", s, mean_evidence(f.evidence), f.noise.width, f.noise.lateral_factor, f.noise.lateral_extra, f.noise.axial_factor, f.noise.axial_extra, (int)f.mixture.size(), (double)f.mixture.outlier_fraction, f.occupancy, f.escaped);
+}
+
 class Run {
  public:
   Run(const Views& views, const RegistrationOptions& options, Progress& progress, Checkpoint& checkpoint)
-      : options_(options), problems_(make_problems(views, options.engine.evidence, options.seed)),
+      : options_(options), views_(views), problems_(make_problems(views, options.engine.evidence, options.seed)),
         progress_(progress), checkpoint_(checkpoint) {
     out_.view.resize(views.view.size());
     timed("views");
@@ -109,14 +113,14 @@ class Run {
   // Coarse poses of all views and the group they are under.
   bool find(CoarseState& coarse) {
     const LatentModel model = latent_model(options_);
-    Competition found = compete(problems_, model.autoencoder.get(), options_, progress_);
+    Competition found = compete(*problems_, model.autoencoder.get(), options_, progress_);
     timed("starts");
     if (!found.finished) return false;
     coarse.crowded = found.crowded;
     coarse.starts = std::move(found.report);
     coarse.agreement = found.agreement;
     coarse.weights_sha256 = model.weights_sha256;
-    const Problem& problem = problems_.of(coarse.crowded);
+    const Problem& problem = problems_->of(coarse.crowded);
     SoftState state = std::move(found.winner);
     if (options_.symmetry != "none") {
       const std::string asked = names_a_group(options_.symmetry) ? options_.symmetry : "";
@@ -141,30 +145,41 @@ class Run {
   }
 
   Registration finish(CoarseState coarse) {
-    const Problem& problem = problems_.of(coarse.crowded);
-    RefineOptions refine = options_.engine.refine;
-    if (options_.search == "exhaustive") {
-      refine.rotations = kExhaustiveRotations;
-      refine.planar_rotations = kExhaustivePlanarRotations;
-    }
+    const RefineOptions& refine = options_.engine.refine;
+    const bool exhaustive = options_.search == "exhaustive";
+    const int rotations = views_.planar ? (exhaustive ? kExhaustivePlanarRotations : refine.planar_rotations)
+                                        : (exhaustive ? kExhaustiveRotations : refine.rotations);
     const RotationGroup group = rotations_of(coarse.group);
-    const SearchGrid grid =
-        search_grid(problem.planar() ? refine.planar_rotations : refine.rotations, problem.planar(), group);
-    const Refiner refiner(problem, grid, refine);
+    const std::vector<Pose> saved = coarse.pose;
+    const SearchGrid grid = search_grid(rotations, views_.planar, group);
     FineState fine;
-    if (!restore(checkpoint_, "fine", fine)) {
-      fine.fit = refiner.begin(std::move(coarse.pose), NoiseModel{}, group);
+    const bool known = restore(checkpoint_, "fine", fine);
+    if (!known) {
+      const Refiner first(problems_->of(coarse.crowded), grid, options_.engine);
+      fine.fit = first.with_noise(first.begin(std::move(coarse.pose), NoiseModel{}, group));
+      timed("noise");
+      dbg("noise", fine.fit);
+      if (progress_.cancelled()) return cancelled();
+    }
+    if (fine.fit.noise.lateral_factor != 1 || fine.fit.noise.axial_factor != 1)  // what is one burst is told by it
+      problems_.emplace(make_problems(views_, options_.engine.evidence, options_.seed, fine.fit.noise));
+    const Problem& problem = problems_->of(coarse.crowded);
+    const Refiner refiner(problem, grid, options_.engine);
+    if (!known) {
       fine.fit = refiner.rounds(std::move(fine.fit), progress_);
       timed("rounds");
+      dbg("rounds", fine.fit);
       if (progress_.cancelled()) return cancelled();
       fine.fit = refiner.calibrated(std::move(fine.fit));
       timed("calibration");
+      dbg("calibration", fine.fit);
       fine.fit = refiner.discrete(std::move(fine.fit));
       timed("centres");
       refiner.search(fine.fit);
       refiner.sweep(fine.fit, refine.sweeps);
       fine.fit.evidence = refiner.judge(fine.fit);
       timed("last search");
+      dbg("last", fine.fit);
       if (progress_.cancelled()) return cancelled();
       keep(checkpoint_, "fine", fine);
     }
@@ -172,33 +187,36 @@ class Run {
     out_.symmetry = coarse.symmetry;
     if (!group.empty()) fit = tested(problem, refiner, coarse.group, std::move(fit));
     timed("symmetry tested");
-    const Refiner::AgainstCloud against = against_cloud(grid, refine, coarse.crowded, fit);
+    const Refiner::AgainstCloud against = against_cloud(grid, coarse.crowded, fit);
     timed("verdict");
     report_views(problem, options_.engine, fit, out_);
     timed("polish");
     judge_registration(against.cloud, against.structure, options_.engine.verdict, out_);
     conclude(problem, coarse, fit);
+    if (getenv("HACK")) for (std::size_t i = 0; i < saved.size(); ++i) out_.view[i].template_from_view = saved[i];
     return std::move(out_);
   }
 
   // Several draws of what judges: a view says little by a fifth of its bursts.
-  Refiner::AgainstCloud against_cloud(const SearchGrid& grid, const RefineOptions& refine, bool crowded,
-                                      const Fit& fit) const {
-    Refiner::AgainstCloud sum;
+  Refiner::AgainstCloud against_cloud(const SearchGrid& grid, bool crowded, const Fit& fit) const {
+    const VerdictOptions& o = options_.engine.verdict;
+    Refiner::AgainstCloud sum, mean;
     std::vector<double> count(fit.pose.size(), 0.0);
     sum.structure.assign(count.size(), 0.0), sum.cloud.assign(count.size(), 0.0);
-    for (int draw = 0; draw < options_.engine.verdict.draws; ++draw) {
-      const Problems other = make_problems(problems_.plain.views, options_.engine.evidence,
-                                           options_.seed + kDrawSeed * static_cast<std::uint64_t>(draw + 1));
-      const Refiner::AgainstCloud one = Refiner(other.of(crowded), grid, refine).judge_against_cloud(fit);
+    for (int draw = 0; draw < o.draws; ++draw) {
+      const Problems other = make_problems(views_, options_.engine.evidence,
+                                           options_.seed + kDrawSeed * static_cast<std::uint64_t>(draw + 1), fit.noise);
+      const Refiner::AgainstCloud one = Refiner(other.of(crowded), grid, options_.engine).judge_against_cloud(fit);
       for (std::size_t i = 0; i < count.size(); ++i) {
         if (!std::isfinite(one.structure[i]) || !std::isfinite(one.cloud[i])) continue;
         sum.structure[i] += one.structure[i], sum.cloud[i] += one.cloud[i], ++count[i];
       }
+      mean = sum;
+      for (std::size_t i = 0; i < count.size(); ++i)
+        mean.structure[i] /= count[i], mean.cloud[i] /= count[i];  // not a number where nothing judged
+      if (over_cloud(mean.cloud, mean.structure, o).better_by(2 * o.cloud_standard_errors)) break;  // beyond doubt
     }
-    for (std::size_t i = 0; i < count.size(); ++i)
-      sum.structure[i] /= count[i], sum.cloud[i] /= count[i];  // not a number where nothing judged
-    return sum;
+    return mean;
   }
 
   // With the group against without; evidence decides which is the result.
@@ -246,7 +264,8 @@ class Run {
   }
 
   const RegistrationOptions& options_;
-  Problems problems_;
+  const Views& views_;
+  std::optional<Problems> problems_;
   Progress& progress_;
   Checkpoint& checkpoint_;
   Stopwatch watch_;

@@ -11,6 +11,9 @@
 
 namespace polar {
 
+/// Whether lateral and axial uncertainties differ enough to be calibrated apart.
+bool has_axial_noise(const Views& views, const std::vector<Eigen::Vector3f>& axes);
+
 struct CalibrationReport {
   NoiseModel noise;  // a and b; width as given, inside b once fitted
 };

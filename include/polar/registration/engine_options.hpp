@@ -108,6 +108,8 @@ struct RefineOptions {
   int localisations = 300;           // of a view while the template moves; measured
   int sweeps = 4;                    // of EM and pose steps after a search; measured
   double fewer_centres_errors = 0;  // standard errors that fewer centres may cost; chosen
+  double noise_step = 1.5;           // factor between uncertainties that are tried; chosen
+  int noise_tries = 16;              // chosen
   int calibrations = 3;              // of noise and template in turn; measured
 };
 

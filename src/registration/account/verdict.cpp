@@ -17,13 +17,17 @@ std::string text(const char* pattern, double a, double b) {
 
 }  // namespace
 
+Comparison over_cloud(const Evidence& cloud, const Evidence& structure, const VerdictOptions& options) {
+  // A localisation that the sharp template misses altogether must not outweigh all that it explains.
+  Evidence bounded = structure;
+  for (std::size_t i = 0; i < bounded.size(); ++i)
+    bounded[i] = cloud[i] + std::clamp(structure[i] - cloud[i], -options.most_gain, options.most_gain);
+  return compare(cloud, bounded);
+}
+
 void judge_registration(const Evidence& cloud, const Evidence& evidence, const VerdictOptions& options,
                         Registration& out) {
-  // A localisation that the sharp template misses altogether must not outweigh all that it explains.
-  Evidence bounded = evidence;
-  for (std::size_t i = 0; i < bounded.size(); ++i)
-    bounded[i] = cloud[i] + std::clamp(evidence[i] - cloud[i], -options.most_gain, options.most_gain);
-  const Comparison c = compare(cloud, bounded);
+  const Comparison c = over_cloud(cloud, evidence, options);
   out.structure_gain = c.gain, out.structure_gain_std = c.standard_error;
   if (!c.better_by(options.doubtful_standard_errors)) {
     out.verdict = Verdict::none;

@@ -8,6 +8,9 @@
 
 namespace polar {
 
+/// How much better the structure is than a cloud, no view counting for more than `most_gain`.
+Comparison over_cloud(const Evidence& cloud, const Evidence& structure, const VerdictOptions& options);
+
 /// Fills verdict, its sentence and the gain over the cloud; rejects all views where there is no structure.
 void judge_registration(const Evidence& cloud, const Evidence& evidence, const VerdictOptions& options,
                         Registration& out);

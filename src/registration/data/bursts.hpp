@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "polar/core/view.hpp"
+#include "polar/fusion/effective.hpp"
 
 namespace polar {
 
@@ -13,5 +14,9 @@ namespace polar {
 /// Mahalanobis, under the sum of both covariances, from the first member of a burst to the others.
 std::vector<int> bursts(const View& view, const std::vector<std::uint32_t>& order, double distance,
                         bool planar);
+
+/// The same under uncertainties times the factors of `noise`, across and along the axis of the view.
+std::vector<int> bursts(const View& view, const Eigen::Vector3f& axis, const NoiseModel& noise,
+                        const std::vector<std::uint32_t>& order, double distance);
 
 }  // namespace polar

@@ -47,9 +47,11 @@ std::vector<bool> judging_bursts(const std::vector<int>& burst, const std::vecto
 
 }  // namespace
 
-Problems make_problems(const Views& views, const EvidenceOptions& options, std::uint64_t seed) {
+Problems make_problems(const Views& views, const EvidenceOptions& options, std::uint64_t seed,
+                       const NoiseModel& noise) {
   const std::size_t n = views.view.size();
-  Problem plain{views, {}, {}, {}, {}, {}, {}, false, seed, 0};
+  Problem plain{views, {}, {}, {}, {}, {}, {}, false, noise, seed, 0};
+  plain.noise.planar = views.planar;
   plain.axes.resize(n), plain.shuffled.resize(n), plain.sampled.resize(n), plain.fitted.resize(n), plain.held_out.resize(n);
   Problem thinned = plain;
   thinned.crowded = true;
@@ -62,7 +64,8 @@ Problems make_problems(const Views& views, const EvidenceOptions& options, std::
     thinned.shuffled[i] = sampling_order(weight, KeyedRandom(seed, i, kThinningStage));
     plain.shuffled[i] =
         sampling_order(std::vector<double>(weight.size(), 1.0), KeyedRandom(seed, i, kShuffleStage));
-    const std::vector<int> burst = bursts(view, plain.shuffled[i], options.burst_distance, views.planar);
+    const std::vector<int> burst = 
+        bursts(view, plain.axes[i], plain.noise, plain.shuffled[i], options.burst_distance);
     const std::vector<bool> judges = judging_bursts(burst, plain.shuffled[i], options.held_out_share);
     const auto is_held_out = [&](std::uint32_t j) {
       return burst[j] >= 0 && judges[static_cast<std::size_t>(burst[j])];

@@ -20,6 +20,7 @@ struct Problem {
   Subsets held_out;  // of the other bursts, a few localisations of each: they judge
   std::vector<int> all;
   bool crowded = false;  // samples are thinned because strands are expected: centres need the support of many views
+  NoiseModel noise;  // by whose factors bursts are told apart
   std::uint64_t seed = 1;
   double localisations = 0;
 
@@ -36,7 +37,8 @@ struct Problems {
 
 /// Samples of `thinned` are even (evenness.hpp), and what is too dense is left out of its `fitted`.
 /// Localisations that are held out are the same in both.
-Problems make_problems(const Views& views, const EvidenceOptions& options, std::uint64_t seed);
+Problems make_problems(const Views& views, const EvidenceOptions& options, std::uint64_t seed,
+                       const NoiseModel& noise = {});
 
 /// At most `most` views, evenly through the set: neighbours may share a field of view.
 std::vector<int> some_views(const Problem& problem, std::size_t most);

@@ -203,6 +203,33 @@ Fit Refiner::discrete(Fit fit) const {
   return fit;
 }
 
+// A template fitted under too much noise is too sharp to tell that there is less of it, so that every proposal
+// gets a template of its own.
+Fit Refiner::with_noise(Fit fit) const {
+  struct Way {
+    double lateral, axial;  // of the logarithms of the factors, in steps
+  };
+  std::vector<Way> ways = {{-1, -1}, {1, 1}};
+  if (has_axial_noise(problem_.views, problem_.axes)) ways.insert(ways.end(), {{0, -1}, {0, 1}, {-1, 0}, {1, 0}});
+  fit.evidence = judge(fit);
+  int tries = 0;
+  for (bool moved = true; moved && tries < options_.noise_tries;) {
+    moved = false;
+    for (std::size_t w = 0; w < ways.size(); ++w)
+      for (bool better = true; better && tries < options_.noise_tries; ++tries) {
+        Fit next = fit;
+        next.noise.lateral_factor *= std::pow(options_.noise_step, ways[w].lateral);
+        next.noise.axial_factor *= std::pow(options_.noise_step, ways[w].axial);
+        sweep(next, options_.sweeps);
+        next.evidence = judge(next);
+        if (getenv("DBG")) { const Comparison c = compare(fit.evidence, next.evidence); fprintf(stderr, "noise %.3f %.3f: %.4f +- %.4f\n", next.noise.lateral_factor, next.noise.axial_factor, c.gain, c.standard_error);}
+        better = compare(fit.evidence, next.evidence).better_by(standard_errors_);
+        if (better) fit = std::move(next), moved = true;
+      }
+  }
+  return fit;
+}
+
 Fit Refiner::calibrated(Fit fit) const {
   const Subsets fitted = first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations));
   for (int c = 0; c < options_.calibrations; ++c) {

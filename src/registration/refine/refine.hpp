@@ -32,8 +32,9 @@ void show(const Fit& fit, const Mixture& mixture, FusionData& data);
 
 class Refiner {
  public:
-  Refiner(const Problem& problem, const SearchGrid& grid, const RefineOptions& options)
-      : problem_(problem), grid_(grid), options_(options) {}
+  Refiner(const Problem& problem, const SearchGrid& grid, const EngineOptions& options)
+      : problem_(problem), grid_(grid), options_(options.refine),
+        standard_errors_(options.evidence.standard_errors) {}
 
   /// A template under these poses, at the first width.
   Fit begin(std::vector<Pose> pose, const NoiseModel& noise, const RotationGroup& group) const;
@@ -41,6 +42,8 @@ class Refiner {
   Fit rounds(Fit fit, Progress& progress) const;
   /// Narrower, without a search, as long as evidence gains.
   Fit narrowed(Fit fit) const;
+  /// Stated uncertainties times what evidence asks for, the template fitted again under each proposal.
+  Fit with_noise(Fit fit) const;
   /// Noise and template in turn, as long as evidence gains.
   Fit calibrated(Fit fit) const;
   /// Fewer centres, as long as evidence does not lose by it.
@@ -70,6 +73,7 @@ class Refiner {
   const Problem& problem_;
   const SearchGrid& grid_;
   RefineOptions options_;
+  double standard_errors_;  // within which nothing is told apart
 };
 
 }  // namespace polar

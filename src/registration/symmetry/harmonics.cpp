@@ -46,7 +46,7 @@ std::vector<AxialHarmonic> axial_harmonics(const Problem& problem, const Evidenc
   parallel_for(which.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(which[k]);
     const std::vector<int> burst =
-        bursts(problem.views.view[i], problem.sampled[i], options.burst_distance, problem.planar());
+        bursts(problem.views.view[i], problem.axes[i], problem.noise, problem.sampled[i], options.burst_distance);
     for (int order = 2; order <= highest; ++order) {
       std::map<int, std::vector<Phasor>> of_burst;
       for (const std::uint32_t j : problem.sampled[i]) {

@@ -235,4 +235,31 @@ TEST_P(Grid, readingBetweenVoxelsIsExactForALinearField) {
 }
 
 }  // namespace
+// Which mode of a posterior is drawn must not hang on the processor.
+TEST(LogVolume, SameBitsOnEveryInstructionSet) {
+  const VoxelFrame frame(1.8, 0.075, false);
+  KeyedRandom random(1, 2, 3);
+  LookupPoints points;
+  for (int i = 0; i < 117; ++i) points.add(Eigen::Vector3d(random.normal(), random.normal(), random.normal()).cast<float>());
+  points.pad();
+  VoxelCounts counts(frame);
+  counts.add(points, Eigen::Matrix3f::Identity(), Eigen::Vector3f::Zero(), 48);
+  const auto scores_on = [&](Isa isa) {
+    limit_isa(isa);
+    DensityGrid density(counts);
+    density.blur(0.1);
+    density.normalise();
+    const LogVolume volume(density, 0.05, 0.1);
+    KeyedRandom turns(4, 5, 6);
+    std::vector<float> out;
+    for (int i = 0; i < 200; ++i)
+      out.push_back(volume.score(points, turns.rotation().cast<float>(), Eigen::Vector3f(0.01f, 0.02f, 0.03f)));
+    limit_isa(detected_isa());
+    return out;
+  };
+  const std::vector<float> portable = scores_on(Isa::portable);
+  EXPECT_EQ(portable, scores_on(Isa::avx2));
+  EXPECT_EQ(portable, scores_on(Isa::avx512));
+}
+
 }  // namespace polar

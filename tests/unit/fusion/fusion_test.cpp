@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fixture.hpp"
-#include "fusion/mixture_kernel_choice.hpp"
+#include "fusion/kernel_choice.hpp"
 #include "fusion/voxel_gaussian.hpp"
 #include "polar/core/isa.hpp"
 #include "polar/fusion/calibration.hpp"
