@@ -89,6 +89,20 @@ TEST_F(PicassoReader, IdsAreWholeNumbersOfAnySizeOrText) {
   EXPECT_THAT(words.particle, ElementsAre(0, 1, -1));
 }
 
+TEST_F(PicassoReader, FlatTablesThatHaveAZAreFlat) {
+  std::vector<double> x, zero(12, 0.0), sigma(12, 0.1);
+  for (int i = 0; i < 12; ++i) x.push_back(i);
+  const std::string file = make<float>(
+      "flat.hdf5", {{"x", x}, {"y", x}, {"lpx", sigma}, {"lpy", sigma}, {"z", zero}, {"lpz", zero}});
+  ReadOptions options;
+  options.pixel_size_nm = 100;
+  const LocalisationTable table = read_table(file, options);
+  EXPECT_TRUE(table.planar);
+  EXPECT_EQ(table.size(), 12u);
+  EXPECT_THAT(table.warnings,
+              ::testing::Contains(HasSubstr("z ('z') is 0 nm throughout: registered in the plane")));
+}
+
 TEST_F(PicassoReader, IdsBeyondSignedNumbersStayApart) {
   const std::vector<double> x{1, 2, 3};
   const std::vector<std::uint64_t> group{18446744073709551615U, 9223372036854775807U, 9223372036854775809U};
