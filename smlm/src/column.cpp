@@ -95,7 +95,7 @@ std::string_view trimmed(std::string_view text) {
 std::string normalised(std::string_view name) {
   std::string out;
   for (const char c : trimmed(name)) {
-    if (c == ' ' || c == '-' || c == '.' || c == '_') {
+    if (c == ' ' || c == '-' || c == '.' || c == '_' || c == '(' || c == ')') {
       if (!out.empty() && out.back() != '_') out += '_';
     } else {
       out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -117,13 +117,30 @@ void split_suffix(Heading& heading) {
   heading.name.resize(at);
 }
 
+// Web pages and spreadsheets put blanks that do not break (U+00A0) where others put blanks.
+std::string with_plain_blanks(std::string_view cell) {
+  constexpr std::string_view unbroken = "\xC2\xA0";
+  std::string text(cell);
+  for (auto at = text.find(unbroken); at != std::string::npos; at = text.find(unbroken, at))
+    text.replace(at, unbroken.size(), " ");
+  return text;
+}
+
+// "std(x)": what stands in brackets is the axis, not the unit.
+bool is_axis(std::string_view text) {
+  const std::string name = normalised(text);
+  return name == "x" || name == "y" || name == "z" || name == "xy";
+}
+
 }  // namespace
 
-Heading parse_heading(std::string_view cell) {
-  cell = trimmed(cell);
+Heading parse_heading(std::string_view raw) {
+  const std::string plain = with_plain_blanks(raw);
+  const std::string_view cell = trimmed(plain);
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
     const auto start = cell.rfind(open);
     if (start != std::string_view::npos && start > 0 && cell.back() == close) {
+      if (is_axis(cell.substr(start + 1, cell.size() - start - 2))) break;
       return {normalised(cell.substr(0, start)),
               std::string(trimmed(cell.substr(start + 1, cell.size() - start - 2)))};
     }

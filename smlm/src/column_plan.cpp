@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>
+#include <map>
 
 #include "smlm/error.hpp"
 #include "smlm/number_text.hpp"
@@ -62,6 +63,11 @@ class Planner {
     throw Error(Fault::input, file_, what, remedy);
   }
 
+  // input.columns and its like are about tables of localisations: of mere points the header has to tell.
+  std::string header_or(const std::string& key, const std::string& header) const {
+    return options_.positions_only ? header : key;
+  }
+
   void gather_from_header() {
     bool covariance = false;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -75,6 +81,10 @@ class Planner {
       const auto match = match_heading(parse_heading(column.name));
       if (!match || (column.text && match->quantity != Quantity::particle)) continue;
       const std::string unit = column.unit.empty() ? match->unit : column.unit;
+      // "error [photon]" is not about places.
+      if (is_uncertainty(match->quantity) && !unit.empty() &&
+          !units::parse_length(units::without_square(unit)))
+        continue;
       const Spread spread = column.spread == Spread::variance ? column.spread : match->spread;
       of(match->quantity).push_back({i, unit, spread, match->claim});
       covariance = covariance || match->quantity == Quantity::sigma_xx;
@@ -99,25 +109,24 @@ class Planner {
 
   void gather_from_options() {
     const bool covariance = options_.columns.count("sigma_xx") > 0;
-    bool uncertainty_mapped = false;
-    for (const auto& [key, mapping] : options_.columns) {
-      const auto q = quantity_named(key);
-      uncertainty_mapped = uncertainty_mapped || (q && is_uncertainty(*q));
-    }
-    if (uncertainty_mapped) {
-      for (const Quantity q : standard_deviations) of(q).clear();
-      for (const Quantity q : covariances) of(q).clear();
-    }
+    make_way_for_mapped_uncertainties();
+    std::map<std::size_t, std::string> key_of;  // of a mapped column
     for (const auto& [key, mapping] : options_.columns) {
       auto q = quantity_named(key);
       if (!q) continue;  // violations() has reported it
       if (q == Quantity::sigma_lateral && covariance) q = Quantity::sigma_xy;
       const std::size_t column = find_mapped_column(file_, columns_, key, mapping.name);
+      if (const auto [other, fresh] = key_of.emplace(column, key); !fresh) {
+        fail("input.columns." + other->second + " and input.columns." + key + " both name column '" +
+                 columns_[column].name + "'",
+             "give each its own");
+      }
       const auto by_name = match_heading(parse_heading(columns_[column].name));
       const bool says_variance =
           columns_[column].spread == Spread::variance || (by_name && by_name->spread == Spread::variance);
       const bool variance =
           is_covariance(*q) || mapping.kind == "variance" || (mapping.kind.empty() && says_variance);
+      warn_about_kind(key, mapping, columns_[column], says_variance);
       for (auto& others : candidates_) {
         others.erase(std::remove_if(others.begin(), others.end(),
                                     [&](const Candidate& c) { return c.column == column; }),
@@ -126,6 +135,46 @@ class Planner {
       of(*q) = {{column, mapped_unit(key, mapping, column),
                  variance ? Spread::variance : Spread::standard_deviation, Claim::plain, true}};
     }
+  }
+
+  // A mapped uncertainty replaces the header's of the same axes. Those of other axes stay where the header
+  // calls them uncertainties: who names the axial column still has lateral ones.
+  void make_way_for_mapped_uncertainties() {
+    bool any = false, lateral = false, axial = false, full = options_.columns.count("sigma_xx") > 0;
+    for (const auto& [key, mapping] : options_.columns) {
+      const auto q = quantity_named(key);
+      if (!q || !is_uncertainty(*q)) continue;
+      any = true;
+      full = full || is_covariance(*q);
+      (q == Quantity::sigma_z ? axial : lateral) = true;
+    }
+    if (!any) return;
+    for (const Quantity q : covariances) of(q).clear();
+    const bool one_of_two =
+        (options_.columns.count("sigma_x") > 0) != (options_.columns.count("sigma_y") > 0) &&
+        options_.columns.count("sigma_xy") == 0;
+    for (const Quantity q : standard_deviations) {
+      auto& list = of(q);
+      const bool same_axis = q == Quantity::sigma_z ? axial : lateral;
+      const bool partner = one_of_two && (q == Quantity::sigma_x || q == Quantity::sigma_y);
+      if (full || (same_axis && !partner)) list.clear();
+      list.erase(std::remove_if(list.begin(), list.end(),
+                                [](const Candidate& c) { return c.claim != Claim::plain; }),
+                 list.end());
+    }
+  }
+
+  void warn_about_kind(const std::string& key, const ColumnMapping& mapping, const SourceColumn& column,
+                       bool says_variance) {
+    const std::string unit = column.unit.empty() ? parse_heading(column.name).unit : column.unit;
+    const bool says_length = !unit.empty() && units::without_square(unit) == unit;
+    const bool contradicted =
+        mapping.kind == "std" ? says_variance : mapping.kind == "variance" && says_length;
+    if (!contradicted) return;
+    plan_.warnings.push_back("column '" + column.name + "' holds " +
+                             (says_variance ? "variances" : "lengths") +
+                             " by its header, but input.columns." + key + ".kind says " + mapping.kind +
+                             ": " + mapping.kind + " is taken");
   }
 
   // What the header says of a unit holds unless the mapping says another.
@@ -188,8 +237,14 @@ class Planner {
                    list.end());
       }
     };
+    const auto all = list;
     for (const Claim claim : {Claim::likely, Claim::plain})
       keep_if_any([claim](const Candidate& c) { return c.claim >= claim; });
+    if (is_uncertainty(q)) {
+      for (const Candidate& c : all) {
+        if (c.claim != list.front().claim) outdone_.push_back(c.column);
+      }
+    }
     keep_if_any([](const Candidate& c) {
       const auto unit = units::parse_length(c.unit);
       return unit && *unit != units::Length::pixel;
@@ -198,7 +253,8 @@ class Planner {
     std::string names;
     for (const Candidate& c : list) names += (names.empty() ? "'" : ", '") + columns_[c.column].name + "'";
     const std::string key(column_spec(q).name);
-    fail("several columns could be " + key + ": " + names, "name one under input.columns." + key);
+    fail("several columns could be " + key + ": " + names,
+         header_or("name one under input.columns." + key, "leave only one of them called so"));
   }
 
   // One way of giving uncertainties: full covariances, else one value per axis, else one lateral value.
@@ -208,10 +264,15 @@ class Planner {
       if (!has(Quantity::sigma_lateral)) {
         fail("has an uncertainty of only one of x and y", "name the other, or sigma_xy, under input.columns");
       }
-      of(Quantity::sigma_x).clear();
-      of(Quantity::sigma_y).clear();
+      for (const Quantity q : {Quantity::sigma_x, Quantity::sigma_y}) {
+        if (has(q)) outdone_.push_back(of(q).front().column);
+        of(q).clear();
+      }
     }
-    if (has(Quantity::sigma_x)) of(Quantity::sigma_lateral).clear();
+    if (has(Quantity::sigma_x) && has(Quantity::sigma_lateral)) {
+      outdone_.push_back(of(Quantity::sigma_lateral).front().column);
+      of(Quantity::sigma_lateral).clear();
+    }
     if (!has(Quantity::z)) {
       for (const Quantity q : {Quantity::sigma_z, Quantity::sigma_xz, Quantity::sigma_yz, Quantity::sigma_zz})
         of(q).clear();
@@ -247,10 +308,12 @@ class Planner {
       if (has(q)) continue;
       const std::string key(column_spec(q).name);
       if (!columns_.empty() && columns_.front().name == "1") {
-        fail("has no header", "say which column is what, e.g. input.columns." + key + ": {name: '1'}");
+        fail("has no header",
+             header_or("say which column is what, e.g. input.columns." + key + ": {name: '1'}",
+                       "give it one that names its columns, e.g. 'x [nm],y [nm],z [nm]'"));
       }
       fail("no column is known as " + key + "; its columns are " + list_columns(columns_),
-           "name it under input.columns." + key);
+           header_or("name it under input.columns." + key, "call it so in the header"));
     }
   }
 
@@ -276,11 +339,11 @@ class Planner {
     const auto unit = units::parse_length(text);
     if (!unit)
       fail("column '" + source.name + "' is in '" + text + "', which is not a length",
-           "give its unit under input.columns");
+           header_or("give its unit under input.columns", "give a unit of length there"));
     if (*unit != units::Length::pixel) return {units::to_nm(*unit, 0), std::string(units::name(*unit))};
     if (!(options_.pixel_size_nm > 0)) {
       fail("column '" + source.name + "' is in pixels and their size is not known",
-           "set input.pixel_size_nm");
+           header_or("set input.pixel_size_nm", "give it in nm"));
     }
     plan_.keys_used.insert("pixel_size_nm");
     return {options_.pixel_size_nm, "px = " + number_text(options_.pixel_size_nm) + " nm"};
@@ -338,9 +401,18 @@ class Planner {
     }
   }
 
-  // Columns that speak of uncertainties and have no say, where the ones that are used leave something open.
+  // Columns that speak of uncertainties and have no say: others were called so more plainly or axis by axis,
+  // or the ones that are used leave something open.
   void warn_about_untaken() {
     if (options_.positions_only) return;
+    if (!outdone_.empty()) {
+      std::string names;
+      for (const std::size_t column : outdone_)
+        names += (names.empty() ? "'" : ", '") + columns_[column].name + "'";
+      plan_.warnings.push_back(names +
+                               ": also named like an uncertainty, but the columns listed above are taken "
+                               "(input.columns says otherwise)");
+    }
     const bool axial = !plan_[Quantity::z] || plan_.has_axial_uncertainty();
     if (plan_.has_uncertainty() && axial) return;
     std::string names;
@@ -348,7 +420,8 @@ class Planner {
       const bool taken =
           std::any_of(plan_.used.begin(), plan_.used.end(),
                       [&](const auto& planned) { return planned && planned->column == i; }) ||
-          std::find(taken_for_widths_.begin(), taken_for_widths_.end(), i) != taken_for_widths_.end();
+          std::find(taken_for_widths_.begin(), taken_for_widths_.end(), i) != taken_for_widths_.end() ||
+          std::find(outdone_.begin(), outdone_.end(), i) != outdone_.end();
       if (taken || columns_[i].quantity || !sounds_like_uncertainty(parse_heading(columns_[i].name).name))
         continue;
       names += (names.empty() ? "'" : ", '") + columns_[i].name + "'";
@@ -381,6 +454,7 @@ class Planner {
   std::vector<std::vector<Candidate>> candidates_;
   std::string unitless_positions_, unitless_uncertainties_;
   std::vector<std::size_t> taken_for_widths_;
+  std::vector<std::size_t> outdone_;  // uncertainties by name that others were preferred to
   std::array<std::pair<double, std::string>, 2> position_unit_;  // of x and of z
   ColumnPlan plan_;
 };

@@ -41,7 +41,7 @@ std::string to_text(const Inspection& in) {
   if (in.files.size() > most_files)
     text += "and " + std::to_string(in.files.size() - most_files) + " more files\n";
   text += std::to_string(in.localisations) + " localisations" + (in.planar ? ", planar" : "");
-  if (in.particles > 0) {
+  if (in.particles > 0 && in.localisations > in.unassigned) {
     const double radius_nm = in.particle_radius_nm.median;  // none where every particle is one localisation
     const std::string radius = std::isnan(radius_nm) ? "" : ", median radius " + number(radius_nm) + " nm";
     text += ", " + std::to_string(in.particles) + " particles of " +

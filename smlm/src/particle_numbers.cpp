@@ -58,6 +58,8 @@ ParticleNumbers measure_particles(const LocalisationTable& table) {
     numbers.particle.push_back(i);
     numbers.localisations.push_back(s.n);
     numbers.radius_nm.push_back(unknown * std::sqrt((s.square[0] + s.square[1] + s.square[2]) / s.n));
+    numbers.x_nm.push_back(unknown * std::sqrt(s.square[0] / s.n));
+    numbers.y_nm.push_back(unknown * std::sqrt(s.square[1] / s.n));
     numbers.lateral_nm.push_back(unknown * std::sqrt((s.square[0] + s.square[1]) / (2 * s.n)));
     numbers.axial_nm.push_back(unknown * std::sqrt(s.square[2] / s.n));
     numbers.file.push_back(s.file);

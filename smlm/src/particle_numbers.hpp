@@ -13,6 +13,7 @@ struct ParticleNumbers {
   std::vector<std::size_t> particle;  // its index in the table
   std::vector<double> localisations;
   std::vector<double> radius_nm;  // root mean square distance from the centroid; NaN of a single localisation
+  std::vector<double> x_nm, y_nm;  // standard deviation of the positions along x, and along y
   std::vector<double> lateral_nm;  // standard deviation of the positions along x and y (root mean square)
   std::vector<double> axial_nm;    // and along z
   std::vector<std::uint32_t> file;

@@ -32,6 +32,10 @@ std::optional<Error> obstacle_to_registration(const LocalisationTable& table) {
     return Error(Fault::input, file, what + (lost.empty() ? "" : ": " + lost), remedy);
   };
   if (table.size() == 0) return obstacle("no localisation is left", "correct the table");
+  if (table.particle_names.empty() && table.picked) {
+    return obstacle("no place holds enough localisations to be picked",
+                    "do input.pick.radius_nm and input.pick.min_localisations suit the particles?");
+  }
   if (table.particle_names.empty() && table.unassigned.empty()) {
     return obstacle("no column says which localisation belongs to which particle",
                     "name it under input.columns.particle, or use input.particles: one_per_file");
@@ -43,8 +47,11 @@ std::optional<Error> obstacle_to_registration(const LocalisationTable& table) {
   const auto particles = std::count(filled.begin(), filled.end(), true);
   if (particles >= 2) return std::nullopt;
   return obstacle((particles == 1 ? "1 particle holds localisations" : "no particle holds localisations"),
-                  "at least two are needed; which column names the particle (input.columns.particle, or "
-                  "input.particles: one_per_file)?");
+                  table.picked
+                      ? "at least two are needed; does input.pick.radius_nm suit the particles?"
+                      : "at least two are needed; which column names the particle "
+                        "(input.columns.particle), or is each of several files one (input.particles: "
+                        "one_per_file)?");
 }
 
 ParticleSet group_particles(LocalisationTable table) {

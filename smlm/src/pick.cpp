@@ -265,6 +265,10 @@ std::vector<Centre> find_centres(const LocalisationTable& table, const PickOptio
 void pick_particles(LocalisationTable& table, const std::vector<Centre>& centres, double radius_nm) {
   require_radius(radius_nm);
   const Grid grid(centres, ring * radius_nm);
+  if (!table.particle_names.empty() || !table.unassigned.empty()) {
+    table.warnings.emplace_back("has a column that names particles, which input.particles: picked ignores");
+  }
+  table.picked = true;
   table.particle_names.clear();
   table.unassigned.clear();
   for (std::size_t i = 1; i <= centres.size(); ++i) table.particle_names.push_back(std::to_string(i));

@@ -45,9 +45,18 @@ std::string source_of(const LocalisationTable& table, const std::vector<std::str
 }
 
 // Of rows spread over the table: so many tell an order of magnitude.
+constexpr std::size_t enough_rows = 100000;
+
 double median_sigma_nm(const LocalisationTable& table, bool axial) {
-  constexpr std::size_t enough = 100000;
-  return summarise(sigmas_nm(table, axial, table.size() / enough + 1)).median;
+  return summarise(sigmas_nm(table, axial, table.size() / enough_rows + 1)).median;
+}
+
+// Along one axis, of the covariance's element on the diagonal.
+double median_sigma_nm(const LocalisationTable& table, std::size_t element) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < table.size(); row += table.size() / enough_rows + 1)
+    values.push_back(std::sqrt(static_cast<double>(table.covariance_nm2[row][element])));
+  return summarise(std::move(values)).median;
 }
 
 bool far_apart(double a, double b) { return a > 0 && b > 0 && std::max(a, b) > other_unit * std::min(a, b); }
@@ -63,6 +72,13 @@ void judge_uncertainties(const LocalisationTable& table, std::vector<std::string
   if (lateral < tiny_sigma_nm) {
     warnings.push_back("the median lateral uncertainty is " + nm(lateral) +
                        ", smaller than any microscope's: is it in the right unit?" + from);
+  }
+  const double along_x = median_sigma_nm(table, std::size_t{0}),
+               along_y = median_sigma_nm(table, std::size_t{3});
+  if (far_apart(along_x, along_y)) {
+    warnings.push_back("the median uncertainty is " + nm(along_x) + " along x and " + nm(along_y) +
+                       " along y: is one of them in another unit?" +
+                       source_of(table, {"sigma_x", "sigma_y", "sigma_xx", "sigma_yy"}));
   }
   if (table.planar || table.axial_sigma_assumed) return;
   const double axial = median_sigma_nm(table, true);
@@ -89,7 +105,16 @@ void judge_extents(const LocalisationTable& table, const ParticleNumbers& partic
     warnings.push_back("the particles' median radius is " + nm(radius) +
                        ": are the positions in another unit? (input.unit)" + source_of(table, {"x", "y"}));
   }
+  const double along_x = summarise(particles.x_nm).median, along_y = summarise(particles.y_nm).median;
+  if (far_apart(along_x, along_y)) {
+    warnings.push_back("the particles spread over " + nm(along_x) + " along x and " + nm(along_y) +
+                       " along y: is one of them in another unit?" + source_of(table, {"x", "y"}));
+  }
   const double wide = summarise(particles.lateral_nm).median, deep = summarise(particles.axial_nm).median;
+  if (!table.planar && deep == 0 && wide > 0) {
+    warnings.push_back("z is the same within most particles: are they flat? (input.planar: true)" +
+                       source_of(table, {"z"}));
+  }
   if (!table.planar && far_apart(wide, deep)) {
     warnings.push_back("the particles spread over " + nm(deep) + " along z and " + nm(wide) +
                        " along x and y: is z in another unit?" + source_of(table, {"z"}));
@@ -146,12 +171,25 @@ void judge_giants(const LocalisationTable& table, const ParticleNumbers& particl
                      "; if that is what belongs to no particle, give its id under input.unassigned_particle");
 }
 
+// A double holds 15 digits; kept columns are doubles.
+void judge_digits(const LocalisationTable& table, std::vector<std::string>& warnings) {
+  constexpr double first_rounded = 9007199254740992.0;  // 2^53
+  for (const ExtraColumn& column : table.extra) {
+    const auto too_long = [](double v) { return std::abs(v) >= first_rounded && std::isfinite(v); };
+    if (!column.labels.empty() || std::none_of(column.values.begin(), column.values.end(), too_long))
+      continue;
+    warnings.push_back("column '" + column.name +
+                       "' holds numbers of more than 15 digits, which are kept rounded");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> implausibilities(const LocalisationTable& table) {
   std::vector<std::string> warnings;
   if (table.size() == 0) return warnings;
   judge_uncertainties(table, warnings);
+  judge_digits(table, warnings);
   const ParticleNumbers particles = measure_particles(table);
   const double radius = summarise(particles.radius_nm).median;
   if (!std::isfinite(radius)) return warnings;

@@ -1,5 +1,7 @@
 #include "smlm/read_options.hpp"
 
+#include <set>
+
 #include "smlm/column.hpp"
 #include "smlm/table_reader.hpp"
 #include "smlm/units.hpp"
@@ -15,6 +17,16 @@ void check_word(std::vector<std::string>& faults, const std::string& key, const 
     if (!word.empty()) list += (list.empty() ? "" : ", ") + word;
   }
   faults.push_back(key + ": '" + value + "' is not one of " + list);
+}
+
+std::string quantities() {
+  std::set<std::string> seen;
+  std::string list;
+  for (const ColumnSpec& spec : column_registry()) {
+    if (seen.insert(std::string(spec.name)).second)
+      list += (list.empty() ? "" : ", ") + std::string(spec.name);
+  }
+  return list;
 }
 
 }  // namespace
@@ -44,7 +56,7 @@ std::vector<std::string> violations(const ReadOptions& options) {
   }
   for (const auto& [key, mapping] : options.columns) {
     const std::string where = "columns." + key;
-    if (!quantity_named(key)) faults.push_back(where + ": is not a quantity that is read");
+    if (!quantity_named(key)) faults.push_back(where + ": is not one of " + quantities());
     if (mapping.name.empty()) faults.push_back(where + ".name: must not be empty");
     check_word(faults, where + ".kind", mapping.kind, {"", "std", "variance"});
     if (!mapping.unit.empty() && !units::parse_length(units::without_square(mapping.unit))) {

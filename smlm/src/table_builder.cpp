@@ -27,6 +27,7 @@ constexpr double smallest_depth_nm = 0.01;
 constexpr double most_off_plane = 0.01;
 constexpr std::size_t fewest_for_a_plane = 10;
 constexpr auto remedy = "correct the row, or leave such rows out with input.drop_nonfinite";
+constexpr auto remedy_of_points = "correct the row";
 constexpr double gibibyte = 1024.0 * 1024 * 1024;
 
 double installed_gibibytes() {
@@ -215,9 +216,11 @@ bool TableBuilder::excused(const Problem& problem, std::int64_t particle) const 
 
 std::int64_t TableBuilder::particle_of_name(std::string_view name) {
   if (!names_no_particle(name, plan_.unassigned_particle)) return particles_.of_text(name);
-  const auto& stated = plan_.unassigned_particle;
-  if (!names_no_particle(name, {}) || std::find(stated.begin(), stated.end(), name) != stated.end())
-    table_.keys_used.insert("unassigned_particle");
+  const bool anyway = names_no_particle(name, {});
+  for (const std::string& word : plan_.unassigned_particle) {
+    if (anyway ? word == name : names_no_particle(name, {word}))
+      table_.keys_used.insert("unassigned_particle: " + word);
+  }
   return -1 - none_names_.of_text(name);
 }
 
@@ -281,7 +284,8 @@ void TableBuilder::append(const RowBlock& block) {
     const Problem lateral = lateral_part(block, row, position, covariance);
     if (lateral.reason != Reason::none) {
       if (!excused(lateral, particle))
-        throw Error(Fault::input, where_ + failure(block, row, lateral), "", remedy);
+        throw Error(Fault::input, where_ + failure(block, row, lateral), "",
+                    positions_only_ ? remedy_of_points : remedy);
       reject(words(lateral.reason, !drop_), block.row[row]);
       continue;
     }
@@ -374,7 +378,8 @@ bool TableBuilder::flatten() {
 
 void TableBuilder::drop_suspended() {
   if (suspended_.empty()) return;
-  if (!first_failure_.empty()) throw Error(Fault::input, where_ + first_failure_, "", remedy);
+  if (!first_failure_.empty())
+    throw Error(Fault::input, where_ + first_failure_, "", positions_only_ ? remedy_of_points : remedy);
   std::vector<std::size_t> kept;
   std::size_t next = 0;
   for (std::size_t row = 0; row < table_.size(); ++row) {

@@ -45,6 +45,11 @@ void refuse_known(const FileHead& head) {
   if (head.hdf5 && h5::File::open(head.path).exists("/paraview/dataframe")) {
     refuse("is a pyMINFLUX project", "export the data as .npy from pyMINFLUX");
   }
+  if (head.hdf5 && h5::File::open(head.path).exists("/superparticle")) {
+    refuse("is the record of a run, not a table", "write one from it (polar export --to csv) and read that");
+  }
+  if (head.hdf5 && h5::File::open(head.path).exists("/VTKHDF"))
+    refuse("is a VTKHDF file for ParaView, not a table", "read the run's aligned.csv or aligned.hdf5");
   if (is_mat_v5(head.bytes))
     refuse("is a MATLAB file without a known table", "save a cell array 'particles', or export CSV");
   if (starts("\xFF\xFE") || starts("\xFE\xFF")) refuse("is UTF-16 text", "save it as UTF-8");
@@ -85,11 +90,6 @@ class EqualFiles {
 // Keys that somebody set and that had no say.
 std::vector<std::string> keys_without_effect(const ReadOptions& options, const LocalisationTable& table) {
   const ReadOptions standard;
-  const auto listed = [](const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-    return text;
-  };
   struct Key {
     const char* name;
     bool set;
@@ -107,8 +107,6 @@ std::vector<std::string> keys_without_effect(const ReadOptions& options, const L
        number_text(options.assumed_sigma_nm), "the tables have uncertainties"},
       {"minflux_z_factor", options.minflux_z_factor != standard.minflux_z_factor,
        number_text(options.minflux_z_factor), "there is no z of MINFLUX's"},
-      {"unassigned_particle", !options.unassigned_particle.empty(), listed(options.unassigned_particle),
-       "no row says so"},
       {"pick.radius_nm", options.particles != "picked" && options.pick.radius_nm != standard.pick.radius_nm,
        number_text(options.pick.radius_nm), "input.particles is not picked"},
       {"pick.centres", options.particles != "picked" && !options.pick.centres.empty(), options.pick.centres,
@@ -117,6 +115,11 @@ std::vector<std::string> keys_without_effect(const ReadOptions& options, const L
   for (const Key& key : keys) {
     if (key.set && table.keys_used.count(key.name) == 0)
       warnings.push_back("input." + std::string(key.name) + ": " + key.value + " has no effect: " + key.why);
+  }
+  for (const std::string& word : options.unassigned_particle) {
+    const std::string key = "unassigned_particle: " + word;
+    if (table.keys_used.count(key) == 0)
+      warnings.push_back("input." + key + " has no effect: no row says so");
   }
   return warnings;
 }

@@ -1,6 +1,8 @@
 // Uncertainties have more names than a list could hold; nearly all are made of the same few words.
 #include <algorithm>
 #include <array>
+#include <bitset>
+#include <vector>
 
 #include "smlm/column.hpp"
 
@@ -14,10 +16,11 @@ struct Word {
   Meaning meaning;
 };
 
-constexpr std::array<Word, 53> words{{
+constexpr std::array<Word, 57> words{{
     {"uncertainty", Meaning::spread},
     {"uncertainties", Meaning::spread},
     {"unc", Meaning::spread},
+    {"uncert", Meaning::spread},
     {"precision", Meaning::spread},
     {"prec", Meaning::spread},
     {"locprec", Meaning::spread},
@@ -32,6 +35,9 @@ constexpr std::array<Word, 53> words{{
     {"stddev", Meaning::spread},
     {"sd", Meaning::spread},
     {"deviation", Meaning::spread},
+    {"dev", Meaning::spread},
+    {"rms", Meaning::spread},
+    {"rmse", Meaning::spread},
     {"var", Meaning::variance},
     {"variance", Meaning::variance},
     {"sigma", Meaning::width},
@@ -79,18 +85,33 @@ Meaning meaning_of(std::string_view text) {
 bool is_spread(Meaning m) { return m == Meaning::spread || m == Meaning::variance || m == Meaning::width; }
 bool is_axis(Meaning m) { return m >= Meaning::x && m <= Meaning::lateral; }
 
-// What a word says, also where an axis is glued to it ("xerr", "sigmaxy"): none, one or two meanings.
-std::vector<Meaning> meanings(std::string_view word) {
-  const Meaning whole = meaning_of(word);
-  if (whole != Meaning::none) return {whole};
-  for (const std::string_view axis : {"xy", "x", "y", "z"}) {
-    if (word.size() <= axis.size()) continue;
-    const Meaning before = meaning_of(word.substr(axis.size()));
-    if (word.substr(0, axis.size()) == axis && is_spread(before)) return {meaning_of(axis), before};
-    const Meaning after = meaning_of(word.substr(0, word.size() - axis.size()));
-    if (word.substr(word.size() - axis.size()) == axis && is_spread(after)) return {meaning_of(axis), after};
+constexpr std::size_t longest_word = 40;
+
+// Takes known words off the beginning of `word`, the longest first, until nothing is left; `dead` are the
+// lengths of rests that are known not to come apart.
+bool come_apart(std::string_view word, std::vector<std::string_view>& parts,
+                std::bitset<longest_word + 1>& dead) {
+  if (word.empty()) return true;
+  if (dead[word.size()]) return false;
+  for (std::size_t length = word.size(); length > 0; --length) {
+    if (meaning_of(word.substr(0, length)) == Meaning::none) continue;
+    parts.push_back(word.substr(0, length));
+    if (come_apart(word.substr(length), parts, dead)) return true;
+    parts.pop_back();
   }
-  return {};
+  dead.set(word.size());
+  return false;
+}
+
+// A word, or the known words that are glued together in it ("xerr", "znmerr", "localizationprecisionx");
+// empty where it is none. Glued words must speak of an uncertainty: many names are made of axes and units.
+std::vector<std::string_view> parts_of(std::string_view word) {
+  std::vector<std::string_view> parts;
+  std::bitset<longest_word + 1> dead;
+  if (word.size() > longest_word || !come_apart(word, parts, dead)) return {};
+  const bool spread = std::any_of(parts.begin(), parts.end(),
+                                  [](std::string_view part) { return is_spread(meaning_of(part)); });
+  return parts.size() == 1 || spread ? parts : std::vector<std::string_view>{};
 }
 
 // Calls visit(word) for each word of a normalised name; stops where it returns false.
@@ -110,25 +131,27 @@ std::optional<ColumnMatch> uncertainty_named(const std::string& normalised_name)
   Meaning spread = Meaning::none, axis = Meaning::none;
   bool qualified = false;  // says what it is the uncertainty of, so that it is not just any error
   ColumnMatch match;
-  const bool understood = every_word(normalised_name, [&](std::string_view word) {
-    const std::vector<Meaning> said = meanings(word);
-    for (const Meaning m : said) {
-      if (is_axis(m)) {
-        if (axis != Meaning::none && axis != m) return false;
-        axis = m;
-      } else if (is_spread(m)) {
-        // "sigma uncertainty" would be the uncertainty of a width.
-        if (spread != Meaning::none && (spread == Meaning::width || m == Meaning::width)) return false;
-        spread = spread == Meaning::variance ? spread : m;
-      } else if (std::find(unit_words.begin(), unit_words.end(), word) != unit_words.end()) {
-        match.unit = word;
-      } else {
-        qualified = true;
-      }
+  const auto add = [&](std::string_view part) {
+    const Meaning m = meaning_of(part);
+    if (is_axis(m)) {
+      if (axis != Meaning::none && axis != m) return false;
+      axis = m;
+    } else if (is_spread(m)) {
+      // "sigma uncertainty" would be the uncertainty of a width.
+      if (spread != Meaning::none && (spread == Meaning::width || m == Meaning::width)) return false;
+      spread = spread == Meaning::variance ? spread : m;
+    } else if (std::find(unit_words.begin(), unit_words.end(), part) != unit_words.end()) {
+      match.unit = part;
+    } else {
+      qualified = true;
     }
-    qualified = qualified || word == "uncertainty" || word == "precision" || word == "locprec" ||
-                word == "prec" || word == "crlb";
-    return !said.empty();
+    qualified = qualified || part == "uncertainty" || part == "precision" || part == "locprec" ||
+                part == "prec" || part == "crlb";
+    return true;
+  };
+  const bool understood = every_word(normalised_name, [&](std::string_view word) {
+    const std::vector<std::string_view> parts = parts_of(word);
+    return !parts.empty() && std::all_of(parts.begin(), parts.end(), add);
   });
   if (!understood || spread == Meaning::none) return std::nullopt;
   match.quantity = axis == Meaning::x   ? Quantity::sigma_x
@@ -144,9 +167,11 @@ std::optional<ColumnMatch> uncertainty_named(const std::string& normalised_name)
 
 bool sounds_like_uncertainty(const std::string& normalised_name) {
   return !every_word(normalised_name, [](std::string_view word) {
-    const std::vector<Meaning> said = meanings(word);
-    return std::none_of(said.begin(), said.end(),
-                        [](Meaning m) { return m == Meaning::spread || m == Meaning::variance; });
+    const std::vector<std::string_view> parts = parts_of(word);
+    return std::none_of(parts.begin(), parts.end(), [](std::string_view part) {
+      const Meaning m = meaning_of(part);
+      return m == Meaning::spread || m == Meaning::variance;
+    });
   });
 }
 

@@ -121,7 +121,6 @@ Structure read_shapes(const StructureFile& file) {
   s.site_nm = as_matrix(flat);
   return s;
 }
-}  // namespace
 
 // Whether a text holds nothing but three columns of numbers, without a header of any kind.
 bool is_bare(const std::string& path) {
@@ -146,6 +145,7 @@ Structure read_named(const std::string& path) {
   for (std::string& warning : points.warnings) s.warnings.push_back(path + ": " + warning);
   return s;
 }
+}  // namespace
 
 Structure read_structure(const StructureFile& file) {
   std::error_code ec;

@@ -149,6 +149,8 @@ class Identifiers(TableCase):
     def result(self, ids, wanted=None):
         """Runs particles under these ids; they must come back as they are, everywhere."""
         rows = shape(len(ids), 24)
+        for i, row in enumerate(rows[:50]):
+            row[7] = 100000 * (i + 1)  # six digits and more, which many programs write as 1e+05
         self.write("t.csv", text(rows, ids=lambda p: ids[p - 1]))
         self.ok("run", self.input("[t.csv]", rest=FAST), "--threads", "1", "--overwrite", "--quiet")
         results = self.folder / "results"
@@ -172,6 +174,7 @@ class Identifiers(TableCase):
         self.assertEqual(len({g for g, _ in groups}), 10, "every particle has a group of its own")
         exported = self.polar("export", "results", "--to", "picasso")
         self.assertIn("aligned_particles.csv lists", exported.stderr)
+        self.fails(3, "is the record of a run, not a table: write one from it", "inspect", "results/results.h5")
         self.assertEqual(self.said("results/aligned.hdf5")["particles"], 10)
 
     def test_ids_that_differ_in_spelling_only_are_said(self):
@@ -260,6 +263,36 @@ class Meaning(TableCase):
             self.warned(f"input.{key} has no effect", report)
         self.assertEqual(report["used"], self.plain["used"])
         self.warned("which input.particles: one_per_file ignores", self.said("t.csv", "--one-per-file"))
+
+    def test_every_word_for_no_particle_has_an_effect(self):
+        report = self.said(self.input("[t.csv]", ", unassigned_particle: [4, foo]"))
+        self.assertEqual(report["particles"], 3)
+        self.warned("input.unassigned_particle: foo has no effect", report)
+        self.assertFalse(any("unassigned_particle: 4" in w for w in report["warnings"]), report["warnings"])
+        self.warned("which input.particles: picked ignores",
+                    self.said(self.input("[t.csv]", ", particles: picked, pick: {radius_nm: 200}")))
+
+    def test_a_text_table_of_picasso(self):
+        names = ["x", "y", "z", "lpx", "lpy", "lpz", "group", "frame", "photons"]
+        pixel = [[*(str(v / 1000 / 130) for v in r[:2]), r[2], *(str(v / 1000 / 130) for v in r[3:6]), *r[6:]]
+                 for r in self.rows]
+        self.write("p.csv", text(pixel, names))
+        for more, z_unit in ((", pixel_size_nm: 130, lpz_unit: px", 1), (", pixel_size_nm: 130", 1 / 130)):
+            report = self.said(self.input("[p.csv]", more))
+            for name, factor in (("x", 1), ("z", 1), ("sigma_xy", 1), ("sigma_z", z_unit)):
+                self.assertAlmostEqual(report["used"][name][1], factor * self.plain["used"][name][1], places=3)
+        self.warned("the median of lpz is below 1.5 nm: is it in pixels? (input.lpz_unit: px)", report)
+        report = self.said(self.input("[p.csv]", ", pixel_size_nm: 130, lpz_unit: px, unit: px"))
+        self.assertAlmostEqual(report["used"]["z"][1], self.plain["used"]["z"][1], places=3)
+
+    def test_exports_say_what_was_assumed(self):
+        rows = [r[:6] + [r[6], r[7], r[8]] for r in shape(6, 30)]
+        self.write("a.csv", text(rows, NAMES[:3] + ["uncertainty [nm]", "-", "-"] + NAMES[6:], columns=[0, 1, 2, 3, 6]))
+        self.ok("run", self.input("[a.csv]", rest="registration: {starts: random}\noutput: {formats: [hdf5]}\n"),
+                "--threads", "1", "--quiet")
+        done = self.polar("export", "results", "--to", "csv,tiff", "--voxel-nm", "0.01")
+        self.assertIn("has no axial uncertainty: twice the lateral one is assumed", done.stderr)
+        self.assertIn("instead of 0.01 nm", done.stderr)
 
     def test_uncertainties_by_any_name(self):
         for names, variance in ((["x_err", "y_err", "z_err"], 0), (["error_x", "error_y", "error_z"], 0),
@@ -367,6 +400,10 @@ class Meaning(TableCase):
 
     def test_text_that_is_no_yaml_says_what_to_do(self):
         self.fails(2, "a backslash in double quotes", "inspect", self.write("b.yaml", 'input: {files: ["C:\\Users\\t.csv"]}\n'))
+        self.fails(2, "Decimals follow a point, not a comma", "inspect",
+                   self.write("b.yaml", "input: {files: [t.csv], pixel_size_nm: 0,13}\n"))
+        self.fails(2, "input.columns.id: is not one of x, y, z,", "inspect",
+                   self.write("b.yaml", "input: {files: [t.csv], columns: {id: {name: particle}}}\n"))
         self.fails(2, "YAML is indented with blanks", "inspect", self.write("b.yaml", "input:\n\tfiles: [t.csv]\n"))
         self.ok("inspect", self.write("b.yaml", "\ufeffinput: {files: [t.csv]}\n"))
 
@@ -441,7 +478,9 @@ class Structures(TableCase):
         self.assertEqual([s[2] for s in sites], [0, 0])
         self.assertIn("has no z: the structure is flat", said)
         self.write("s.csv", "0,50,0,-20\n1,20,45,-20\n")
-        self.fails(3, "has no header", "simulate", "s.yaml", "--overwrite")
+        self.fails(3, "has no header: give it one that names its columns", "simulate", "s.yaml", "--overwrite")
+        self.write("s.csv", "x [px],y [px],z [px]\n5,0,-2\n2,4,-2\n")
+        self.fails(3, "their size is not known: give it in nm", "simulate", "s.yaml", "--overwrite")
 
 
 class Poses(TableCase):

@@ -48,6 +48,7 @@ struct LocalisationTable {
   std::set<std::string> keys_used;
   std::vector<std::string> warnings;  // one line each, for the log and the report
   bool planar = false;                // no z, or one that says nothing: registered in the plane
+  bool picked = false;                // particles are picks of fields of view
   bool maybe_planar = false;          // z is constant, over too few rows to tell
   double position_unit_nm = 1;        // what x was given in
   bool axial_sigma_assumed = false;   // sigma_z was absent: 2 x lateral

@@ -19,8 +19,8 @@ struct ColumnMapping {
 struct ReadOptions {
   /// auto, or the name of a reader: csv, thunderstorm, picasso, smap, ... (see table_readers()).
   std::string format = "auto";
-  /// Canonical name (x, y, z, sigma_x, sigma_xy, sigma_xx, particle, ...) -> column. Wins over the header;
-  /// where any uncertainty is mapped, no other uncertainty is looked for.
+  /// Canonical name (x, y, z, sigma_x, sigma_xy, sigma_xx, particle, ...) -> column. Wins over the header; a
+  /// mapped uncertainty replaces the header's of the same axes, a covariance all of them.
   std::map<std::string, ColumnMapping> columns;
   /// Nanometres per camera pixel, for whatever is in pixels; 0: as the file says.
   double pixel_size_nm = 0;

@@ -166,7 +166,7 @@ std::vector<std::string> File::read_member_strings(const std::string& dataset, c
   const Handle type(H5Dget_type(object.get()), H5Tclose);
   const int index = H5Tget_member_index(type.get(), member.c_str());
   const Handle element(H5Tget_member_type(type.get(), static_cast<unsigned>(index)), H5Tclose);
-  if (H5Tis_variable_str(element.get()) != 0)
+  if (!state_->limits.variable_text && H5Tis_variable_str(element.get()) != 0)
     state_->fail_input(dataset, "its field '" + member + "' holds text of variable length",
                        "write it with a fixed one");
   checked_member_elements(dataset, member, first, rows, H5Tget_size(element.get()));

@@ -32,10 +32,11 @@ std::vector<double> read_ids(const h5::File& file, const std::string& member, h5
       ids.push_back(builder.label(column, id));
     return ids;
   }
-  std::int64_t last = 0;
-  for (const std::int64_t id : file.read_member<std::int64_t>(locs, member, first, rows)) {
-    ids.push_back(!ids.empty() && id == last ? ids.back() : builder.label(column, std::to_string(id)));
-    last = id;
+  const WholeIds whole(
+      [&](auto type) { return file.read_member<decltype(type)>(locs, member, first, rows); });
+  for (std::size_t i = 0; i < rows; ++i) {
+    const bool again = i > 0 && whole.id[i] == whole.id[i - 1] && whole.beyond.empty();
+    ids.push_back(again ? ids.back() : builder.label(column, whole.text(i)));
   }
   return ids;
 }

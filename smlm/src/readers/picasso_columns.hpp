@@ -1,6 +1,8 @@
 // What Picasso's columns mean, however they are stored.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,22 @@ SourceColumn picasso_column(const std::string& name, const ReadOptions& options)
 /// The options with the pixel size of the sidecar where they give none. Error(input) where it has none
 /// either.
 ReadOptions with_picasso_pixel_size(const std::string& path, const ReadOptions& options);
+
+/// Ids that are whole numbers of up to 64 bits, with a sign or without one. HDF5 clips what a type cannot
+/// hold, so that those beyond the signed ones are read a second time; a double would not hold them either.
+struct WholeIds {
+  std::vector<std::int64_t> id;
+  std::vector<std::uint64_t> beyond;  // empty where all fit
+
+  /// `read(T())` gives all of them as T.
+  template <class Read>
+  explicit WholeIds(const Read& read) : id(read(std::int64_t())) {
+    if (std::find(id.begin(), id.end(), INT64_MAX) != id.end()) beyond = read(std::uint64_t());
+  }
+  std::string text(std::size_t i) const {
+    return id[i] == INT64_MAX ? std::to_string(beyond[i]) : std::to_string(id[i]);
+  }
+};
 
 /// Notes that options.lpz_unit had a say, and warns when lpz was read as nm and its median is so small that
 /// it looks like pixels.

@@ -44,8 +44,8 @@ void append_block(std::vector<ColumnArray>& arrays, const std::vector<std::strin
       continue;
     }
     std::vector<std::string> ids;
-    for (const std::int64_t id : column_of(read(std::int64_t()), names.size(), i))
-      ids.push_back(std::to_string(id));
+    const WholeIds whole([&](auto type) { return column_of(read(type), names.size(), i); });
+    for (std::size_t row = 0; row < whole.id.size(); ++row) ids.push_back(whole.text(row));
     arrays.push_back(ColumnArray::of_text(column, std::move(ids)));
   }
 }

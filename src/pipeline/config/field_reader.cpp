@@ -141,6 +141,11 @@ void FieldReader::finish() const {
     bool known = false;
     for (const std::string& k : known_) known = known || k == key;
     if (known) continue;
+    const bool number = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
+    if (number && value.kind == Node::Kind::null)
+      throw smlm::Error(smlm::Fault::usage, at_line(where_, value.line),
+                        "unknown key '" + prefix_ + key.substr(0, kLongestShown) + "'",
+                        "is it the end of a number? Decimals follow a point, not a comma");
     const std::string near = nearest_word(key, known_);
     throw smlm::Error(smlm::Fault::usage, at_line(where_, value.line),
                       "unknown key '" + prefix_ + key.substr(0, kLongestShown) + "'",

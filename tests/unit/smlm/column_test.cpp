@@ -41,6 +41,9 @@ TEST(Column, HeadingsComeApartIntoNameAndUnit) {
   check("x [\xC2\xB5m]", "x", "\xC2\xB5m");
   check("", "", "");
   check("[nm]", "[nm]", "");
+  check("x\xC2\xA0[nm]", "x", "nm");
+  check("std(x)", "std_x", "");
+  check("var (y) [nm^2]", "var_y", "nm^2");
 }
 
 TEST(Column, VendorNamesAreKnown) {
@@ -68,6 +71,13 @@ TEST(Column, UncertaintiesAreKnownByTheirWords) {
     EXPECT_EQ(match(name)->quantity, Quantity::sigma_x) << name;
     EXPECT_EQ(match(name)->claim, Claim::plain) << name;
   }
+  for (const char* name :
+       {"LocalizationPrecisionX", "xnmerr", "std(x)", "x std dev", "uncert_x", "rmse_x", "CRLBx"})
+    EXPECT_TRUE(match(name) && match(name)->quantity == Quantity::sigma_x) << name;
+  EXPECT_EQ(match("znmerr")->quantity, Quantity::sigma_z);
+  EXPECT_EQ(match("znmerr")->unit, "nm");
+  EXPECT_EQ(match("var(x) [nm^2]")->spread, Spread::variance);
+  EXPECT_FALSE(match(std::string(40, 'x').c_str())) << "axes alone are no uncertainty";
   EXPECT_EQ(match("sigma_x")->claim, Claim::likely);
   EXPECT_EQ(match("var-z-nm2")->quantity, Quantity::sigma_z);
   EXPECT_EQ(match("var-z-nm2")->spread, Spread::variance);

@@ -146,6 +146,47 @@ TEST_F(CsvReader, ColumnsCanBeNamed) {
   EXPECT_THAT(error.what(), HasSubstr("'first', 'second'"));
 }
 
+TEST_F(CsvReader, AMappedUncertaintyLeavesThoseOfOtherAxes) {
+  const std::string table =
+      "x_nm,y_nm,z_nm,uncertainty_x [nm],uncertainty_y [nm],axial,other\n1,2,3,4,5,6,7\n";
+  ReadOptions options;
+  options.columns["sigma_z"] = {"axial", "um", ""};
+  const LocalisationTable axial = read(table, options);
+  EXPECT_FLOAT_EQ(axial.covariance_nm2[0][0], 16);
+  EXPECT_FLOAT_EQ(axial.covariance_nm2[0][3], 25);
+  EXPECT_FLOAT_EQ(axial.covariance_nm2[0][5], 36e6F);
+  options.columns.clear();
+  options.columns["sigma_y"] = {"other", "nm", ""};
+  const LocalisationTable one = read(table, options);
+  EXPECT_FLOAT_EQ(one.covariance_nm2[0][0], 16);
+  EXPECT_FLOAT_EQ(one.covariance_nm2[0][3], 49);
+  options.columns.clear();
+  options.columns["sigma_xy"] = {"other", "nm", ""};
+  EXPECT_FLOAT_EQ(read(table, options).covariance_nm2[0][0], 49);
+  options.columns["sigma_xy"] = {"uncertainty_x", "", "variance"};
+  const LocalisationTable squared = read(table, options);
+  EXPECT_FLOAT_EQ(squared.covariance_nm2[0][0], 4);
+  EXPECT_THAT(squared.warnings,
+              ::testing::Contains(HasSubstr("holds lengths by its header, but input.columns.sigma_xy")));
+  options.columns["sigma_xy"].name = "other";
+  options.columns["sigma_z"] = {"other", "nm", ""};
+  EXPECT_THAT(refused(table, options).what(), HasSubstr("both name column 'other'"));
+}
+
+TEST_F(CsvReader, UncertaintiesThatOthersWerePreferredToAreNamed) {
+  const LocalisationTable table =
+      read("x_nm,y_nm,uncertainty_x [nm],uncertainty_y [nm],localization precision [nm]\n1,2,3,4,5\n");
+  EXPECT_FLOAT_EQ(table.covariance_nm2[0][0], 9);
+  EXPECT_THAT(table.warnings,
+              ::testing::Contains(HasSubstr("'localization precision [nm]': also named like")));
+}
+
+TEST_F(CsvReader, WhatIsNoLengthIsNoUncertaintyOfAPlace) {
+  const LocalisationTable table = read("x_nm,y_nm,precision [nm],error [photon]\n1,2,3,4\n");
+  EXPECT_FLOAT_EQ(table.covariance_nm2[0][0], 9);
+  ASSERT_EQ(table.extra.size(), 1u);
+}
+
 TEST_F(CsvReader, TablesWithoutHeaderAreMappedByNumber) {
   ReadOptions options;
   options.columns["x"] = {"1", "nm", "std"};

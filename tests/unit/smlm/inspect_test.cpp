@@ -76,6 +76,24 @@ TEST_F(Inspect, WhatLooksWrongIsSaid) {
   EXPECT_THAT(read(head + "1,0,0,5\n1,100000,0,5\n").warnings, Contains(HasSubstr("another unit")));
 }
 
+TEST_F(Inspect, OneAxisInAnotherUnitIsSaid) {
+  const std::string head = "particle,x_nm,y_nm,uncertainty_x_nm,uncertainty_y_nm\n";
+  EXPECT_THAT(read(head + "1,0,0,5,6\n1,100,90,5,6\n").warnings, IsEmpty());
+  EXPECT_THAT(read(head + "1,0,0,5,.006\n1,100,90,5,.006\n").warnings,
+              Contains(HasSubstr("5 nm along x and 0.006 nm along y")));
+  EXPECT_THAT(read(head + "1,0,0,5,6\n1,100,.09,5,6\n").warnings,
+              Contains(HasSubstr("along y: is one of them in another unit? (x <- 'x_nm' (nm); y <- 'y_nm'")));
+  EXPECT_THAT(read("particle,x_nm,y_nm,z_nm\n1,0,0,5\n1,99,90,5\n2,0,0,70\n2,99,90,70\n").warnings,
+              Contains(HasSubstr("z is the same within most particles")));
+}
+
+TEST_F(Inspect, NumbersThatDoublesRoundAreSaid) {
+  EXPECT_THAT(read("x_nm,y_nm,time\n1,2,1700000000123456789\n").warnings,
+              Contains(HasSubstr("column 'time' holds numbers of more than 15 digits")));
+  EXPECT_THAT(read("x_nm,y_nm,time\n1,2,900719925474099\n").warnings,
+              ::testing::Not(Contains(HasSubstr("digits"))));
+}
+
 TEST_F(Inspect, RealPsfLikeUncertaintiesAreNoticed) {
   SMLM_SHARED_FILE(challenge, "formats/smlm_challenge_MT1.N1.HD-AS.csv");
   EXPECT_THAT(read_table(challenge, {}).warnings, Contains(HasSubstr("width of a PSF")));

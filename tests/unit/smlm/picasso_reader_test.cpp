@@ -89,6 +89,58 @@ TEST_F(PicassoReader, IdsAreWholeNumbersOfAnySizeOrText) {
   EXPECT_THAT(words.particle, ElementsAre(0, 1, -1));
 }
 
+TEST_F(PicassoReader, FlatTablesThatHaveAZAreFlat) {
+  std::vector<double> x, zero(12, 0.0), sigma(12, 0.1);
+  for (int i = 0; i < 12; ++i) x.push_back(i);
+  const std::string file = make<float>(
+      "flat.hdf5", {{"x", x}, {"y", x}, {"lpx", sigma}, {"lpy", sigma}, {"z", zero}, {"lpz", zero}});
+  ReadOptions options;
+  options.pixel_size_nm = 100;
+  const LocalisationTable table = read_table(file, options);
+  EXPECT_TRUE(table.planar);
+  EXPECT_EQ(table.size(), 12u);
+  EXPECT_THAT(table.warnings,
+              ::testing::Contains(HasSubstr("z ('z') is 0 nm throughout: registered in the plane")));
+}
+
+TEST_F(PicassoReader, IdsBeyondSignedNumbersStayApart) {
+  const std::vector<double> x{1, 2, 3};
+  const std::vector<std::uint64_t> group{18446744073709551615U, 9223372036854775807U, 9223372036854775809U};
+  h5::File file = h5::File::create(path("u.hdf5"));
+  file.write_table("/locs",
+                   {h5::table_column("x", x), h5::table_column("y", x), h5::table_column("group", group)});
+  file.close();
+  ReadOptions options;
+  options.pixel_size_nm = 100;
+  EXPECT_THAT(read_table(path("u.hdf5"), options).particle_names,
+              ElementsAre("18446744073709551615", "9223372036854775807", "9223372036854775809"));
+}
+
+TEST_F(PicassoReader, IdsMayBeTextOfAnyLength) {
+  struct Row {
+    double x, y;
+    const char* group;
+  };
+  const std::array<Row, 2> rows{{{1, 2, "001"}, {3, 4, "a much longer name"}}};
+  const hid_t word = H5Tcopy(H5T_C_S1);
+  H5Tset_size(word, H5T_VARIABLE);
+  const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof(Row));
+  H5Tinsert(type, "x", offsetof(Row, x), H5T_NATIVE_DOUBLE);
+  H5Tinsert(type, "y", offsetof(Row, y), H5T_NATIVE_DOUBLE);
+  H5Tinsert(type, "group", offsetof(Row, group), word);
+  const hid_t h5 = H5Fcreate(path("v.hdf5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hsize_t size = rows.size();
+  const hid_t space = H5Screate_simple(1, &size, nullptr);
+  const hid_t locs = H5Dcreate2(h5, "/locs", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(locs, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data());
+  H5Dclose(locs), H5Sclose(space), H5Fclose(h5), H5Tclose(type), H5Tclose(word);
+  ReadOptions options;
+  options.pixel_size_nm = 100;
+  const LocalisationTable table = read_table(path("v.hdf5"), options);
+  EXPECT_THAT(table.particle_names, ElementsAre("001", "a much longer name"));
+  EXPECT_THAT(table.position_nm[1], ElementsAre(300, 400, 0));
+}
+
 TEST_F(PicassoReader, TheLastDocumentWithAPixelSizeDecides) {
   const std::string file = make<float>("f.hdf5", three);
   write("f.yaml", "Pixelsize: 160\n---\nPixelsize: 130\n---\nPixelsize: null\n");

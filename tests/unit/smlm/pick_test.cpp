@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fixture.hpp"
+#include "smlm/particle_set.hpp"
 #include "smlm/table_reader.hpp"
 
 namespace smlm {
@@ -80,6 +81,22 @@ TEST_F(PickFromFile, CentresComeFromATable) {
   EXPECT_EQ(test::error_of([&] { read_tables({field, other}, options); }).fault(), Fault::usage);
   options.pick.radius_nm = 0;
   EXPECT_EQ(test::error_of([&] { read_table(field, options); }).fault(), Fault::usage);
+}
+
+TEST_F(PickFromFile, WhatKeepsParticlesFromBeingPickedIsSaid) {
+  const std::string field = write("f.csv", "x_nm,y_nm,particle\n1,1,1\n2,2,1\n100,100,2\n101,101,2\n");
+  ReadOptions options;
+  options.particles = "picked";
+  options.pick.radius_nm = 10;
+  const LocalisationTable none = read_table(field, options);
+  EXPECT_THAT(
+      obstacle_to_registration(none)->what(),
+      ::testing::HasSubstr("no place holds enough localisations to be picked: do input.pick.radius_nm"));
+  options.pick.min_localisations = 2;
+  const LocalisationTable two = read_table(field, options);
+  EXPECT_FALSE(obstacle_to_registration(two));
+  EXPECT_THAT(two.warnings,
+              ::testing::Contains(::testing::HasSubstr("which input.particles: picked ignores")));
 }
 
 TEST_F(PickFromFile, ARealFieldHasItsOrigami) {
