@@ -47,6 +47,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
   });
   expert.section("proposals", [&](auto& s) {
     s.field("views", o.proposals.views);
+    s.field("polar_views", o.proposals.polar_views);
     s.field("fewest_starts", o.proposals.fewest_starts);
     s.field("most_starts", o.proposals.most_starts);
     s.field("alike_deg", o.proposals.alike_deg);
@@ -57,6 +58,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("regrown_sweeps", o.proposals.regrown_sweeps);
     s.field("rejected", o.proposals.rejected);
     s.field("most_proposals", o.proposals.most_proposals);
+    s.field("fine_rejected", o.proposals.fine_rejected);
   });
   expert.section("symmetry", [&](auto& s) {
     s.field("similarity_blur", o.symmetry.similarity_blur);
@@ -96,7 +98,8 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("settled", o.refine.settled);
     s.field("localisations", o.refine.localisations);
     s.field("sweeps", o.refine.sweeps);
-    s.field("fewer_centres_errors", o.refine.fewer_centres_errors);
+    s.field("noise_step", o.refine.noise_step);
+    s.field("noise_tries", o.refine.noise_tries);
     s.field("calibrations", o.refine.calibrations);
   });
   expert.section("verdict", [&](auto& s) {

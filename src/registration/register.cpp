@@ -9,6 +9,7 @@
 
 #include "data/template_tools.hpp"
 #include "polar/core/constants.hpp"
+#include "polar/core/rng.hpp"
 #include "polar/core/symmetry_group.hpp"
 #include "proposals/compete.hpp"
 #include "proposals/latent_method.hpp"
@@ -26,6 +27,7 @@ namespace polar {
 namespace {
 
 constexpr std::uint64_t kDrawSeed = 7919;  // between the draws of what judges the verdict
+constexpr std::uint32_t kRegrownStage = 29;
 constexpr double kLargestFactor = 1.5;  // of a, either way, before a warning
 
 class Stopwatch {
@@ -73,8 +75,11 @@ std::vector<Pose> poses_of(const std::vector<SoftPose>& soft) {
   return out;
 }
 
-void dbg(const char* s, const Fit& f) {
-  if (getenv("DBG")) fprintf(stderr, "%s evidence %.4f width %.4f lat %.3f+%.4f ax %.3f+%.4f centres %d out %.3f occ %.2f esc %d\n", s, mean_evidence(f.evidence), f.noise.width, f.noise.lateral_factor, f.noise.lateral_extra, f.noise.axial_factor, f.noise.axial_extra, (int)f.mixture.size(), (double)f.mixture.outlier_fraction, f.occupancy, f.escaped);
+std::vector<int> some_at_random(const Problem& problem, double share, int key) {
+  const std::vector<std::uint32_t> order =
+      random_order(problem.size(), KeyedRandom(problem.seed, static_cast<std::uint64_t>(key), kRegrownStage));
+  const auto n = static_cast<std::size_t>(std::ceil(share * static_cast<double>(problem.size())));
+  return {order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n)};
 }
 
 class Run {
@@ -150,7 +155,6 @@ class Run {
     const int rotations = views_.planar ? (exhaustive ? kExhaustivePlanarRotations : refine.planar_rotations)
                                         : (exhaustive ? kExhaustiveRotations : refine.rotations);
     const RotationGroup group = rotations_of(coarse.group);
-    const std::vector<Pose> saved = coarse.pose;
     const SearchGrid grid = search_grid(rotations, views_.planar, group);
     FineState fine;
     const bool known = restore(checkpoint_, "fine", fine);
@@ -158,7 +162,6 @@ class Run {
       const Refiner first(problems_->of(coarse.crowded), grid, options_.engine);
       fine.fit = first.with_noise(first.begin(std::move(coarse.pose), NoiseModel{}, group));
       timed("noise");
-      dbg("noise", fine.fit);
       if (progress_.cancelled()) return cancelled();
     }
     if (fine.fit.noise.lateral_factor != 1 || fine.fit.noise.axial_factor != 1)  // what is one burst is told by it
@@ -168,18 +171,17 @@ class Run {
     if (!known) {
       fine.fit = refiner.rounds(std::move(fine.fit), progress_);
       timed("rounds");
-      dbg("rounds", fine.fit);
+      fine.fit = regrown(problem, refiner, std::move(fine.fit));
+      timed("regrown");
       if (progress_.cancelled()) return cancelled();
       fine.fit = refiner.calibrated(std::move(fine.fit));
       timed("calibration");
-      dbg("calibration", fine.fit);
       fine.fit = refiner.discrete(std::move(fine.fit));
       timed("centres");
       refiner.search(fine.fit);
       refiner.sweep(fine.fit, refine.sweeps);
       fine.fit.evidence = refiner.judge(fine.fit);
       timed("last search");
-      dbg("last", fine.fit);
       if (progress_.cancelled()) return cancelled();
       keep(checkpoint_, "fine", fine);
     }
@@ -193,8 +195,29 @@ class Run {
     timed("polish");
     judge_registration(against.cloud, against.structure, options_.engine.verdict, out_);
     conclude(problem, coarse, fit);
-    if (getenv("HACK")) for (std::size_t i = 0; i < saved.size(); ++i) out_.view[i].template_from_view = saved[i];
     return std::move(out_);
+  }
+
+  // The template grown again from the poses of some views, as long as evidence gains by it: a hot spot between
+  // two labels is no place to climb from.
+  Fit regrown(const Problem& problem, const Refiner& refiner, Fit fit) {
+    const ProposalOptions& p = options_.engine.proposals;
+    const AnnealOptions& a = options_.engine.anneal;
+    const SoftAnnealer annealer(problem, problem.all, a, {options_.tilt_deg * kRadiansPerDegree, options_.flip});
+    for (int k = 1, rejected = 0; k <= p.most_proposals && rejected < p.fine_rejected && !progress_.cancelled(); ++k) {
+      std::vector<SoftPose> pose;
+      for (const Pose& t : fit.pose) pose.push_back({t.rotation.cast<float>(), t.translation.cast<float>()});
+      SoftState state = annealer.from_poses(pose, some_at_random(problem, p.regrown_share, k), p.regrown_width);
+      state.group = fit.group;
+      annealer.anneal({p.regrown_sweeps, p.regrown_width, a.last_width, p.regrown_beta, a.last_beta, a.narrowing, false},
+                      5000 + static_cast<std::uint64_t>(k), state);
+      Fit next = refiner.rounds(refiner.begin(poses_of(state.best), fit.noise, fit.group), progress_);
+      const Comparison c = compare(fit.evidence, next.evidence);
+      const bool better = c.better_by(options_.engine.evidence.standard_errors);
+      rejected = better ? 0 : rejected + 1;
+      if (better) fit = std::move(next);
+    }
+    return fit;
   }
 
   // Several draws of what judges: a view says little by a fifth of its bursts.

@@ -50,6 +50,7 @@ struct AnnealOptions {
 /// apart.
 struct ProposalOptions {
   int views = 96;              // that take part in the competition, evenly through the set; measured
+  int polar_views = 32;        // that the latent start poses; the others follow its template; measured
   int fewest_starts = 2, most_starts = 4;  // random ones; measured
   double alike_deg = 15;       // within which two starts pose a view alike, up to one common rotation; chosen
   double agreeing_share = 0.9;  // of the views that two starts pose alike when they agree; chosen
@@ -58,6 +59,7 @@ struct ProposalOptions {
   int regrown_sweeps = 10;     // measured
   int rejected = 1;            // proposals in a row after which no more are made; measured
   int most_proposals = 4;      // chosen
+  int fine_rejected = 1;       // the same of exact templates; chosen
 };
 
 /// Which groups are tried on the coarse template.
@@ -93,8 +95,8 @@ struct VerdictOptions {
 /// From poses to a sharp template: search, fuse, narrower as long as held-out localisations gain.
 struct RefineOptions {
   double localisations_per_centre = 25;  // of the template's mixture; measured
-  int fewest_centres = 96, most_centres = 512;  // measured
-  int fewest_of_unit = 24;               // centres of an asymmetric unit; measured
+  int fewest_centres = 96, most_centres = 256;  // measured
+  int fewest_of_unit = 8;                // centres of an asymmetric unit; measured
   double first_width = 0.09, last_width = 0.03, narrowing = 0.72;  // of the template; measured
   double search_width = 0.05;        // a search looks at the template no sharper than this; measured
   int rotations = 2304;              // of the search grid; exhaustive: 50,000 (the paper's)
@@ -107,7 +109,6 @@ struct RefineOptions {
   double settled = 0.01;             // share of views that may still move when searching ends; chosen
   int localisations = 300;           // of a view while the template moves; measured
   int sweeps = 4;                    // of EM and pose steps after a search; measured
-  double fewer_centres_errors = 0;  // standard errors that fewer centres may cost; chosen
   double noise_step = 1.5;           // factor between uncertainties that are tried; chosen
   int noise_tries = 16;              // chosen
   int calibrations = 3;              // of noise and template in turn; measured

@@ -198,12 +198,13 @@ SoftState SoftAnnealer::random_start(std::uint64_t key) const {
   return state;
 }
 
-SoftState SoftAnnealer::from_poses(const std::vector<SoftPose>& pose, double width) const {
+SoftState SoftAnnealer::from_poses(const std::vector<SoftPose>& pose, const std::vector<int>& posed,
+                                   double width) const {
   SoftState state(frame_);
   state.outlier_fraction = options_.first_outlier_fraction;
   state.sample.resize(problem_.size());
   state.best = pose;
-  for (const int v : which_) {
+  for (const int v : posed) {
     const auto i = static_cast<std::size_t>(v);
     if (all_[i].count > 0) state.sample[i] = {pose[i]};
   }

@@ -51,8 +51,8 @@ class SoftAnnealer {
 
   /// Random poses; `key` tells starts apart.
   SoftState random_start(std::uint64_t key) const;
-  /// One sample a view: poses from elsewhere.
-  SoftState from_poses(const std::vector<SoftPose>& pose, double width) const;
+  /// One sample a view of `posed`: poses from elsewhere. The others take no part yet.
+  SoftState from_poses(const std::vector<SoftPose>& pose, const std::vector<int>& posed, double width) const;
 
   /// The density of the samples, blurred by `width`, symmetric under the state's group.
   void fuse(double width, SoftState& state) const { fuse(all_, width, state); }

@@ -56,10 +56,11 @@ class Contest {
     return h;
   }
 
-  Hypothesis from(const std::string& name, const std::vector<SoftPose>& pose, std::uint64_t key) {
+  Hypothesis from(const std::string& name, const std::vector<SoftPose>& pose, const std::vector<int>& posed,
+                  std::uint64_t key) {
     Hypothesis h{SoftState(plain_.frame()), {}, false, {}};
     h.report.name = name;
-    h.state = plain_.from_poses(pose, options_.engine.proposals.regrown_width);
+    h.state = plain_.from_poses(pose, posed, options_.engine.proposals.regrown_width);
     plain_.anneal(growth(), key, h.state);
     return h;
   }
@@ -102,6 +103,13 @@ class Contest {
   }
   const SoftAnnealer& of(bool crowded) const { return crowded ? thinned_ : plain_; }
   const std::vector<int>& which() const { return which_; }
+  /// At most so many of them, evenly.
+  std::vector<int> some(std::size_t most) const {
+    std::vector<int> few;
+    const std::size_t n = std::min(most, which_.size());
+    for (std::size_t k = 0; k < n; ++k) few.push_back(which_[k * which_.size() / n]);
+    return few;
+  }
 
  private:
   AnnealStage growth() const {
@@ -155,19 +163,19 @@ Competition compete(const Problems& problems, const Autoencoder* model, const Re
   // Poses from elsewhere; false: cancelled.
   const auto posed_starts = [&] {
     if (wants(options, "imaged") &&
-        !step(contest.from("imaged", std::vector<SoftPose>(problems.plain.size()), 900)))
+        !step(contest.from("imaged", std::vector<SoftPose>(problems.plain.size()), contest.which(), 900)))
       return false;
-    return !wants(options, "polar") || model == nullptr ||
-           step(contest.from("polar", polar_poses(problems.plain, contest.which(), *model, options), 901));
+    if (!wants(options, "polar") || model == nullptr) return true;
+    const std::vector<int> few = contest.some(static_cast<std::size_t>(o.polar_views));
+    return step(contest.from("polar", polar_poses(problems.plain, few, *model, options), few, 901));
   };
   if (!wants(options, "random")) {
     if (!posed_starts()) return cancelled;
   } else {
-    for (int k = 1; k <= o.most_starts && (k <= o.fewest_starts || !contest.agreed()); ++k) {
+    for (int k = 1; k <= o.most_starts && (k <= o.fewest_starts || !contest.agreed()); ++k)
       if (!step(contest.random(k))) return cancelled;
-      // They are asked for where two random starts do not agree.
-      if (k == o.fewest_starts && !contest.agreed() && !posed_starts()) return cancelled;
-    }
+    // They are asked for where random starts do not agree.
+    if (!contest.agreed() && !posed_starts()) return cancelled;
   }
   for (int k = 1, rejected = 0; k <= o.most_proposals && rejected < o.rejected; ++k) {
     if (!step(contest.regrown(k))) return cancelled;

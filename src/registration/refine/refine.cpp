@@ -195,7 +195,7 @@ Fit Refiner::discrete(Fit fit) const {
     if (next.mixture.size() >= fit.mixture.size()) continue;
     sweep(next, 2 * options_.sweeps);
     next.evidence = judge(next);
-    if (!compare(fit.evidence, next.evidence).better_by(-options_.fewer_centres_errors)) break;
+    if (!compare(fit.evidence, next.evidence).better_by(-standard_errors_)) break;
     fit = std::move(next);
   }
   const FusionData data(problem_.views, problem_.axes, fit.noise, problem_.sampled);
@@ -207,11 +207,12 @@ Fit Refiner::discrete(Fit fit) const {
 // gets a template of its own.
 Fit Refiner::with_noise(Fit fit) const {
   struct Way {
-    double lateral, axial;  // of the logarithms of the factors, in steps
+    double lateral, axial, width;  // of the logarithms of the factors and of the width, in steps
   };
-  std::vector<Way> ways = {{-1, -1}, {1, 1}};
-  if (has_axial_noise(problem_.views, problem_.axes)) ways.insert(ways.end(), {{0, -1}, {0, 1}, {-1, 0}, {1, 0}});
+  std::vector<Way> ways = {{-1, -1, 0}, {-1, -1, 1}, {0, 0, 1}, {1, 1, 0}};
+  if (has_axial_noise(problem_.views, problem_.axes)) ways.insert(ways.end(), {{0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}});
   fit.evidence = judge(fit);
+  fit = narrowed(std::move(fit));  // or a template that is too wide would be taken for noise that is overstated
   int tries = 0;
   for (bool moved = true; moved && tries < options_.noise_tries;) {
     moved = false;
@@ -220,9 +221,9 @@ Fit Refiner::with_noise(Fit fit) const {
         Fit next = fit;
         next.noise.lateral_factor *= std::pow(options_.noise_step, ways[w].lateral);
         next.noise.axial_factor *= std::pow(options_.noise_step, ways[w].axial);
+        next.noise.width *= std::pow(options_.noise_step, ways[w].width);
         sweep(next, options_.sweeps);
         next.evidence = judge(next);
-        if (getenv("DBG")) { const Comparison c = compare(fit.evidence, next.evidence); fprintf(stderr, "noise %.3f %.3f: %.4f +- %.4f\n", next.noise.lateral_factor, next.noise.axial_factor, c.gain, c.standard_error);}
         better = compare(fit.evidence, next.evidence).better_by(standard_errors_);
         if (better) fit = std::move(next), moved = true;
       }

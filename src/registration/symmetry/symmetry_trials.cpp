@@ -73,7 +73,8 @@ class Trials {
     if (!problem_.planar()) names.insert(names.end(), {"T", "O", "I"});
     for (const std::string& name : names) {
       const SymmetryFrame f = best_frame(similarity_, name, o_.polyhedral_hint);
-      const double least = name[0] == 'C' ? o_.hint : o_.polyhedral_hint;
+      // What looks more alike under any turn about an axis is no polyhedron.
+      const double least = name[0] == 'C' ? o_.hint : std::max(o_.polyhedral_hint, axial.similarity);
       if (f.similarity >= least || name == asked) out.push_back(f);
     }
     const bool has = std::any_of(out.begin(), out.end(), [&](const auto& f) { return f.group == asked; });
