@@ -42,7 +42,7 @@ TEST(SoftAnnealer, evidenceIsHigherForTheRightPosesThanForRandomOnes) {
   const SoftAnnealer annealer(p.plain, p.plain.all, {}, {});
   std::vector<SoftPose> truth;
   for (const Pose& pose : scene.pose) truth.push_back({pose.rotation.cast<float>(), Eigen::Vector3f::Zero()});
-  const SoftState right = annealer.from_poses(truth, 0.06);
+  const SoftState right = annealer.from_poses(truth, p.plain.all, 0.06);
   SoftState wrong = annealer.random_start(1);
   annealer.fuse(0.06, wrong);
   EXPECT_TRUE(compare(annealer.judge(wrong, 1), annealer.judge(right, 1)).better_by(3));
