@@ -28,7 +28,8 @@ int run(const Arguments& a) {
   ResultRecord result = smlm::read_isolated(record, [&] { return read_result_file(record); });
   result.render.voxel_nm = a.voxel_nm;
   for (const std::string& format : a.formats)
-    for (const std::string& name : write_format(format, output, result.superparticle, result.render))
+    for (const std::string& name :
+         write_format(format, output, {result.superparticle, result.render, result.poses}))
       std::printf("%s/%s\n", output.c_str(), name.c_str());
   return 0;
 }

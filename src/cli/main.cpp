@@ -33,8 +33,10 @@ int run_program(int argc, char** argv) {
   app.require_subcommand(1);
   polar::cli::Action action;
   polar::cli::add_run(app, action);
+  polar::cli::add_batch(app, action);
   polar::cli::add_simulate(app, action);
   polar::cli::add_export(app, action);
+  polar::cli::add_apply(app, action);
   polar::cli::add_evaluate(app, action);
   polar::cli::add_inspect(app, action);
   polar::cli::add_train(app, action);

@@ -126,7 +126,8 @@ HalfMaps compare_half_maps(const Results& first, const Results& second, std::uin
     return drawn_inside(t, grid, calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm));
   };
   out.voxel_nm = grid.voxel_nm;
-  out.shells = fourier_shells(draw(a, first), draw(b, second));
+  out.first_density = draw(a, first), out.second_density = draw(b, second);
+  out.shells = fourier_shells(out.first_density, out.second_density);
   out.resolution = shell_resolution(out.shells);
   return out;
 }

@@ -63,21 +63,22 @@ TemplateSites template_sites(const Results& results) {
   return {scale_nm * fused.centre, fused.weight, scale_nm * fused.width};
 }
 
-smlm::LocalisationTable superparticle(const Results& results) {
-  const smlm::LocalisationTable& in = results.particles.table;
+smlm::LocalisationTable aligned(const smlm::ParticleSet& particles,
+                                const std::vector<std::optional<Pose>>& template_from_table) {
+  const smlm::LocalisationTable& in = particles.table;
   smlm::LocalisationTable out;
-  for (const smlm::Particle& p : results.particles.particles) out.particle_names.push_back(p.name);
+  for (const smlm::Particle& p : particles.particles) out.particle_names.push_back(p.name);
   out.files = in.files;
   out.formats = in.formats;
-  out.planar = results.planar;
+  out.planar = in.planar;
   for (const smlm::ExtraColumn& c : in.extra) {
     out.extra.push_back(c);
     out.extra.back().values.clear();
   }
-  for (std::size_t i = 0; i < results.particles.particles.size(); ++i) {
-    if (!results.registration.view[i].accepted) continue;
-    const Pose pose = template_from_table(results, i);
-    for (const std::uint32_t row : results.particles.particles[i].rows) {
+  for (std::size_t i = 0; i < particles.particles.size(); ++i) {
+    if (!template_from_table[i]) continue;
+    const Pose& pose = *template_from_table[i];
+    for (const std::uint32_t row : particles.particles[i].rows) {
       const auto& x = in.position_nm[row];
       const Eigen::Vector3d moved = pose * Eigen::Vector3d(x[0], x[1], x[2]);
       out.position_nm.push_back({moved.x(), moved.y(), moved.z()});
@@ -89,6 +90,15 @@ smlm::LocalisationTable superparticle(const Results& results) {
         out.extra[c].values.push_back(in.extra[c].values[row]);
     }
   }
+  return out;
+}
+
+smlm::LocalisationTable superparticle(const Results& results) {
+  std::vector<std::optional<Pose>> pose(results.particles.particles.size());
+  for (std::size_t i = 0; i < pose.size(); ++i)
+    if (results.registration.view[i].accepted) pose[i] = template_from_table(results, i);
+  smlm::LocalisationTable out = aligned(results.particles, pose);
+  out.planar = results.planar;
   return out;
 }
 

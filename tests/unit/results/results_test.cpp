@@ -110,7 +110,7 @@ TEST_F(ResultsOfPores, NothingAcceptedStillWrites) {
   write_result_file(directory_.path("results.h5"), results_, t);
   write_points_vtkhdf(directory_.path("aligned.hdf"), t);
   write_volume_vtkhdf(directory_.path("template.hdf"), render(t));
-  write_preview_png(directory_.path("preview.png"), render(t));
+  write_preview_png(directory_.path("preview.png"), {{"", render(t)}});
   EXPECT_EQ(read_result_file(directory_.path("results.h5")).superparticle.size(), 0u);
 }
 

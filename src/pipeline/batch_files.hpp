@@ -1,0 +1,16 @@
+// The files that `polar batch` writes beside the folders of its data sets.
+#pragma once
+
+#include <string>
+
+namespace polar::pipeline {
+
+constexpr const char* kBatchSummary = "summary.csv";
+constexpr const char* kBatchConditions = "conditions.csv";
+constexpr const char* kBatchState = "batch.json";
+
+inline bool is_batch_file(const std::string& name) {
+  return name == kBatchSummary || name == kBatchConditions || name == kBatchState;
+}
+
+}  // namespace polar::pipeline
