@@ -60,18 +60,29 @@ double fallen(const Counts& c, double q, double end, double drop) {
   return inside;
 }
 
+// How many particles the counts that are not below `fewest` make one expect between `from` and `fewest`.
+double expected_between(const Counts& c, int from) {
+  const double q = best(c);
+  return c.particles * (at_least(from, c.sites, q) / at_least(c.fewest, c.sites, q) - 1);
+}
+
 int fewest_seen(const std::vector<int>& occupied, int sites) {
-  int fewest = 1;
-  for (; fewest < sites; ++fewest) {
+  int fewest = sites;
+  for (const int n : occupied)
+    if (n > 0) fewest = std::min(fewest, n);
+  if (fewest == sites) return 1;  // every site of every particle: nothing is missing
+  for (; fewest < sites; ++fewest) {  // those that chance left in although most like them are missing
     const Counts above(occupied, fewest + 1, sites);
     if (above.particles < 1) break;
-    const double q = best(above);
-    const double expected =
-        above.particles * std::exp(log_probability(fewest, sites, q)) / at_least(fewest + 1, sites, q);
+    const double expected = expected_between(above, fewest);
     const auto seen = static_cast<double>(std::count(occupied.begin(), occupied.end(), fewest));
     if (seen >= expected - kMissing * std::sqrt(expected)) break;
   }
-  return fewest;
+  const Counts kept(occupied, fewest, sites);
+  const double expected = expected_between(kept, 1);
+  const auto seen = static_cast<double>(
+      std::count_if(occupied.begin(), occupied.end(), [&](int n) { return n > 0 && n < fewest; }));
+  return seen >= expected - std::sqrt(expected) ? 1 : fewest;
 }
 
 // Variance of the counts over that of the truncated distribution.

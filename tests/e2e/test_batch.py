@@ -22,10 +22,12 @@ output: {directory: batch}
 class Batch(PolarCase):
     def setUp(self):
         super().setUp()
+        simulation = self.write("simulation.yaml", "simulation: {particles: 8, blinks_mean: 4, cramer_rao: false}\n")
         for labelled in (40, 60, 80):
             for cell in range(4):
-                self.simulate(f"simulation: {{particles: 8, blinks_mean: 4, cramer_rao: false, seed: {labelled + cell},"
-                              f" labelling_efficiency: {labelled / 100}}}", f"data/labelled_{labelled}/cell_{cell}")
+                self.ok("simulate", simulation, "--output", f"data/labelled_{labelled}/cell_{cell}",
+                        "--set", f"simulation.seed={labelled + cell}",
+                        "--set", f"simulation.labelling_efficiency={labelled / 100}")
         self.broken = self.folder / "data/labelled_60/cell_1/localisations.csv"
         self.table = self.broken.read_text()
         self.broken.write_text("x,y\n1,2\n3\n")

@@ -59,14 +59,14 @@ class Channels(PolarCase):
     def test_the_second_colour_is_where_it_should_be(self):
         both = [dict(row, channel=1) for row in self.rings] + [dict(row, channel=2) for row in self.centres]
         self.table("both.csv", both, ["channel"])
-        more = "registration: {starts: [imaged]}\noutput: {formats: [hdf5, csv, vtkhdf, tiff]}\n"
+        more = "registration: {starts: [imaged], symmetry: D8}\noutput: {formats: [hdf5, csv, vtkhdf, tiff]}\n"
         self.write("run.yaml", "input: {files: both.csv, channel: {column: channel, register: [1]}}\n" + more)
         self.ok("run", "run.yaml")
         first, second = self.aligned(channel="1"), self.aligned(channel="2")
         self.assertEqual(len(second) % CENTRE_LOCALISATIONS, 0)
         self.assertGreater(len(second), 30 * CENTRE_LOCALISATIONS)
-        self.assertSamePlace(self.centroid(second), self.centroid(first), 1)
-        self.assertSamePlace(self.centroid(second), (0, 0, 0), 1)  # of a template in its own frame
+        self.assertGreater(len(first), len(second))
+        self.assertSamePlace(self.centroid(second), (0, 0, 0), 1)  # where the axes of the rings' symmetry meet
         # The centre takes no part: without it the poses are the same bits.
         self.table("rings.csv", self.rings)
         self.write("rings.yaml", "input: {files: rings.csv}\n" + more)

@@ -16,11 +16,11 @@ struct Labelling {
   double dispersion = 1;      // variance over that of independent labels; above 1 widens the interval
 };
 
-/// From the numbers of occupied sites of particles: a binomial distribution of which the smallest counts are
-/// missing, because particles that show too little are not seen or not accepted. `fewest` is raised from 1
-/// while so few particles show that number that chance does not explain it. A site of several labels is
-/// occupied where any is. Interval by the likelihood ratio. `occupied` holds at least one particle with a
-/// site.
+/// From the numbers of occupied sites of particles: a binomial distribution of which the smallest counts may
+/// be missing, because particles that show too little are not seen or not accepted. Counts below the smallest
+/// one that is as frequent as the larger ones make one expect are left out (`fewest`), unless chance explains
+/// that they are so few; particles without any site always. A site of several labels is occupied where any
+/// is. Interval by the likelihood ratio. `occupied` holds at least one particle with a site.
 Labelling labelling_efficiency(const std::vector<int>& occupied, int sites, int labels_per_site);
 
 }  // namespace polar
