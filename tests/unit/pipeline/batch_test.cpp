@@ -62,7 +62,8 @@ class BatchTest : public ::testing::Test {
   }
   std::vector<std::string> states() {
     std::vector<std::string> all;
-    for (const auto& d : state()["datasets"])
+    const nlohmann::json batch = state();
+    for (const auto& d : batch["datasets"])
       all.push_back(d["name"].get<std::string>() + " " + d["state"].get<std::string>());
     return all;
   }
