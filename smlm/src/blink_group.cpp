@@ -7,7 +7,6 @@
 #include <numeric>
 #include <optional>
 
-#include "name_index.hpp"
 #include "smlm/error.hpp"
 #include "smlm/kept_column.hpp"
 #include "table_rows.hpp"

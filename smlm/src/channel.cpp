@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
-#include "name_index.hpp"
 #include "smlm/error.hpp"
 #include "smlm/kept_column.hpp"
+#include "smlm/number_text.hpp"
 
 namespace smlm {
 namespace {

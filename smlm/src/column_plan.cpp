@@ -4,8 +4,8 @@
 #include <charconv>
 #include <initializer_list>
 
-#include "name_index.hpp"
 #include "smlm/error.hpp"
+#include "smlm/number_text.hpp"
 
 namespace smlm {
 namespace {
@@ -14,7 +14,8 @@ struct Candidate {
   std::size_t column = 0;
   std::string unit;
   Spread spread = Spread::standard_deviation;
-  bool weak = false;
+  Claim claim = Claim::plain;
+  bool mapped = false;  // by input.columns
 };
 
 constexpr std::initializer_list<Quantity> standard_deviations{Quantity::sigma_x, Quantity::sigma_y,
@@ -38,11 +39,17 @@ class Planner {
   ColumnPlan plan() {
     gather_from_header();
     gather_from_options();
+    if (options_.planar && has(Quantity::z)) {
+      plan_.keys_used.insert("planar");
+      of(Quantity::z).clear();
+    }
+    prefer_uncertainties_to_widths();
     for (std::size_t q = 0; q < ColumnPlan::quantities; ++q) choose(static_cast<Quantity>(q));
     settle_uncertainties();
     require_positions();
     for (std::size_t q = 0; q < ColumnPlan::quantities; ++q) convert(static_cast<Quantity>(q));
     warn_about_units();
+    warn_about_untaken();
     collect_extras();
     return std::move(plan_);
   }
@@ -61,19 +68,22 @@ class Planner {
       const SourceColumn& column = columns_[i];
       if (column.quantity) {
         if (*column.quantity != Quantity::other)
-          of(*column.quantity).push_back({i, column.unit, column.spread, false});
+          of(*column.quantity).push_back({i, column.unit, column.spread});
         covariance = covariance || column.quantity == Quantity::sigma_xx;
         continue;
       }
       const auto match = match_heading(parse_heading(column.name));
       if (!match || (column.text && match->quantity != Quantity::particle)) continue;
       const std::string unit = column.unit.empty() ? match->unit : column.unit;
-      of(match->quantity)
-          .push_back(
-              {i, unit, is_covariance(match->quantity) ? Spread::variance : column.spread, match->weak});
+      const Spread spread = column.spread == Spread::variance ? column.spread : match->spread;
+      of(match->quantity).push_back({i, unit, spread, match->claim});
       covariance = covariance || match->quantity == Quantity::sigma_xx;
     }
     if (covariance) take_sigma_xy_as_covariance();
+    if (options_.positions_only) {
+      for (const Quantity q : standard_deviations) of(q).clear();
+      for (const Quantity q : covariances) of(q).clear();
+    }
   }
 
   // Beside sigma_xx, "sigma_xy" is the off-diagonal element; elsewhere the lateral standard deviation.
@@ -83,28 +93,8 @@ class Planner {
       return parse_heading(columns_[c.column].name).name == "sigma_xy";
     });
     if (moved == lateral.end()) return;
-    of(Quantity::sigma_xy).push_back({moved->column, moved->unit, Spread::variance, false});
+    of(Quantity::sigma_xy).push_back({moved->column, moved->unit, Spread::variance});
     lateral.erase(moved);
-  }
-
-  std::size_t find_column(const std::string& key, const std::string& name) const {
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (columns_[i].name == name) return i;
-    }
-    const std::string wanted = parse_heading(name).name;
-    std::vector<std::size_t> similar;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (parse_heading(columns_[i].name).name == wanted) similar.push_back(i);
-    }
-    if (similar.size() == 1) return similar.front();
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-    if (error == std::errc() && end == name.data() + name.size() && number >= 1 &&
-        number <= columns_.size()) {
-      return number - 1;
-    }
-    fail("has no column '" + name + "', which input.columns." + key + " names",
-         "its columns are " + list_columns(columns_));
   }
 
   void gather_from_options() {
@@ -122,14 +112,70 @@ class Planner {
       auto q = quantity_named(key);
       if (!q) continue;  // violations() has reported it
       if (q == Quantity::sigma_lateral && covariance) q = Quantity::sigma_xy;
-      const bool variance = mapping.kind == "variance" || is_covariance(*q);
-      const std::size_t column = find_column(key, mapping.name);
+      const std::size_t column = find_mapped_column(file_, columns_, key, mapping.name);
+      const auto by_name = match_heading(parse_heading(columns_[column].name));
+      const bool says_variance =
+          columns_[column].spread == Spread::variance || (by_name && by_name->spread == Spread::variance);
+      const bool variance =
+          is_covariance(*q) || mapping.kind == "variance" || (mapping.kind.empty() && says_variance);
       for (auto& others : candidates_) {
         others.erase(std::remove_if(others.begin(), others.end(),
                                     [&](const Candidate& c) { return c.column == column; }),
                      others.end());
       }
-      of(*q) = {{column, mapping.unit, variance ? Spread::variance : Spread::standard_deviation, false}};
+      of(*q) = {{column, mapped_unit(key, mapping, column),
+                 variance ? Spread::variance : Spread::standard_deviation, Claim::plain, true}};
+    }
+  }
+
+  // What the header says of a unit holds unless the mapping says another.
+  std::string mapped_unit(const std::string& key, const ColumnMapping& mapping, std::size_t column) {
+    std::string stated = columns_[column].unit;
+    const Heading heading = parse_heading(columns_[column].name);
+    if (stated.empty()) stated = heading.unit;
+    if (const auto match = match_heading(heading); stated.empty() && match) stated = match->unit;
+    if (mapping.unit.empty()) return stated;
+    const auto header = units::parse_length(units::without_square(stated));
+    const auto wanted = units::parse_length(units::without_square(mapping.unit));
+    if (header && wanted && *header != *wanted) {
+      plan_.warnings.push_back("column '" + columns_[column].name + "' is in " + stated +
+                               " by its header, but input.columns." + key + ".unit says " + mapping.unit +
+                               ": " + mapping.unit + " is taken");
+    }
+    return mapping.unit;
+  }
+
+  // Where a column is called an uncertainty, one that is only called sigma is the width of the PSF.
+  void prefer_uncertainties_to_widths() {
+    const auto best = [&](std::initializer_list<Quantity> set) {
+      Claim claim = Claim::weak;
+      for (const Quantity q : set) {
+        for (const Candidate& c : of(q)) claim = std::max(claim, c.claim);
+      }
+      return claim;
+    };
+    if (best({Quantity::sigma_x, Quantity::sigma_y, Quantity::sigma_lateral}) != Claim::plain) return;
+    std::string widths;
+    bool per_axis = false;
+    for (const Quantity q :
+         {Quantity::sigma_lateral, Quantity::sigma_x, Quantity::sigma_y, Quantity::sigma_z}) {
+      if (q == Quantity::sigma_z && !per_axis) break;  // the only axial one beside a lateral uncertainty
+      auto& list = of(q);
+      for (auto c = list.begin(); c != list.end();) {
+        if (c->claim == Claim::plain) {
+          ++c;
+          continue;
+        }
+        widths += (widths.empty() ? "'" : ", '") + columns_[c->column].name + "'";
+        per_axis = per_axis || q == Quantity::sigma_x;
+        taken_for_widths_.push_back(c->column);
+        c = list.erase(c);
+      }
+    }
+    if (!widths.empty()) {
+      plan_.warnings.push_back(widths +
+                               ": taken as the width of the PSF, because other columns are called "
+                               "uncertainties (input.columns says otherwise)");
     }
   }
 
@@ -142,7 +188,8 @@ class Planner {
                    list.end());
       }
     };
-    keep_if_any([](const Candidate& c) { return !c.weak; });
+    for (const Claim claim : {Claim::likely, Claim::plain})
+      keep_if_any([claim](const Candidate& c) { return c.claim >= claim; });
     keep_if_any([](const Candidate& c) {
       const auto unit = units::parse_length(c.unit);
       return unit && *unit != units::Length::pixel;
@@ -156,16 +203,7 @@ class Planner {
 
   // One way of giving uncertainties: full covariances, else one value per axis, else one lateral value.
   void settle_uncertainties() {
-    if (has(Quantity::sigma_xx) || has(Quantity::sigma_yy) || has(Quantity::sigma_zz)) {
-      if (!has(Quantity::sigma_xx) || !has(Quantity::sigma_yy) ||
-          (has(Quantity::z) && !has(Quantity::sigma_zz))) {
-        fail("a covariance needs sigma_xx, sigma_yy and, with z, sigma_zz",
-             "name them all under input.columns");
-      }
-      for (const Quantity q : standard_deviations) of(q).clear();
-    } else {
-      for (const Quantity q : covariances) of(q).clear();
-    }
+    settle_covariance();
     if (has(Quantity::sigma_x) != has(Quantity::sigma_y)) {
       if (!has(Quantity::sigma_lateral)) {
         fail("has an uncertainty of only one of x and y", "name the other, or sigma_xy, under input.columns");
@@ -180,6 +218,30 @@ class Planner {
     }
   }
 
+  // Variances without anything off the diagonal are standard deviations squared; a covariance needs what the
+  // data have: no z where there is none, and an axial variance only where z is correlated.
+  void settle_covariance() {
+    const bool correlated = has(Quantity::sigma_xy) || has(Quantity::sigma_xz) || has(Quantity::sigma_yz);
+    const std::pair<Quantity, Quantity> diagonal[]{{Quantity::sigma_xx, Quantity::sigma_x},
+                                                   {Quantity::sigma_yy, Quantity::sigma_y},
+                                                   {Quantity::sigma_zz, Quantity::sigma_z}};
+    for (const auto& [covariance, deviation] : diagonal) {
+      const bool variance = has(deviation) && of(deviation).front().spread == Spread::variance;
+      if (correlated && variance && !has(covariance)) of(covariance) = of(deviation);
+      if (!correlated && has(covariance)) of(deviation) = of(covariance);
+      if (!correlated) of(covariance).clear();
+    }
+    if (!correlated) return;
+    if (!has(Quantity::sigma_xx) || !has(Quantity::sigma_yy)) {
+      fail("a covariance needs sigma_xx and sigma_yy", "name them under input.columns");
+    }
+    if (!has(Quantity::sigma_zz) && has(Quantity::z) &&
+        (has(Quantity::sigma_xz) || has(Quantity::sigma_yz))) {
+      fail("a covariance of z with x or y needs sigma_zz", "name it under input.columns");
+    }
+    for (const Quantity q : standard_deviations) of(q).clear();
+  }
+
   void require_positions() {
     for (const Quantity q : {Quantity::x, Quantity::y}) {
       if (has(q)) continue;
@@ -192,74 +254,109 @@ class Planner {
     }
   }
 
-  double length_factor(Quantity q, const Candidate& candidate) {
-    if (columns_[candidate.column].unit_nm > 0 && candidate.unit == columns_[candidate.column].unit) {
-      return columns_[candidate.column].unit_nm;
+  // nm per unit of the column, and how people write that unit.
+  std::pair<double, std::string> length_unit(Quantity q, const Candidate& candidate) {
+    const SourceColumn& source = columns_[candidate.column];
+    if (source.unit_nm > 0 && candidate.unit == source.unit) {
+      return {source.unit_nm, source.unit_nm == 1 ? "nm" : "px = " + number_text(source.unit_nm) + " nm"};
     }
-    std::string text = candidate.unit;
-    for (const std::string_view square : {"^2", "\xC2\xB2"}) {
-      const auto at = text.find(square);
-      if (at != std::string::npos) text.resize(at);
-    }
-    const std::string& column = columns_[candidate.column].name;
+    std::string text(units::without_square(candidate.unit));
     if (text.empty()) {
       if (!options_.unit.empty()) {
+        plan_.keys_used.insert("unit");
         text = options_.unit;
       } else if (is_position(q)) {
-        unitless_positions_ += (unitless_positions_.empty() ? "'" : ", '") + column + "'";
+        unitless_positions_ += (unitless_positions_.empty() ? "'" : ", '") + source.name + "'";
         text = "nm";
       } else {
-        unitless_uncertainties_ += (unitless_uncertainties_.empty() ? "'" : ", '") + column + "'";
-        const bool axial = q == Quantity::sigma_z;
-        return plan_[axial ? Quantity::z : Quantity::x]->factor;
+        unitless_uncertainties_ += (unitless_uncertainties_.empty() ? "'" : ", '") + source.name + "'";
+        return position_unit_[q == Quantity::sigma_z || q == Quantity::sigma_zz ? 1 : 0];
       }
     }
     const auto unit = units::parse_length(text);
     if (!unit)
-      fail("column '" + column + "' is in '" + text + "', which is not a length",
+      fail("column '" + source.name + "' is in '" + text + "', which is not a length",
            "give its unit under input.columns");
-    if (*unit == units::Length::pixel && !(options_.pixel_size_nm > 0)) {
-      fail("column '" + column + "' is in pixels and their size is not known", "set input.pixel_size_nm");
+    if (*unit != units::Length::pixel) return {units::to_nm(*unit, 0), std::string(units::name(*unit))};
+    if (!(options_.pixel_size_nm > 0)) {
+      fail("column '" + source.name + "' is in pixels and their size is not known",
+           "set input.pixel_size_nm");
     }
-    return units::to_nm(*unit, options_.pixel_size_nm);
+    plan_.keys_used.insert("pixel_size_nm");
+    return {options_.pixel_size_nm, "px = " + number_text(options_.pixel_size_nm) + " nm"};
+  }
+
+  // A unit with a square on a column of standard deviations says that they are variances.
+  Spread spread_of(Quantity q, const Candidate& candidate) {
+    const bool squared = units::without_square(candidate.unit) != candidate.unit;
+    if (!is_uncertainty(q) || !squared || candidate.mapped || candidate.spread == Spread::variance)
+      return candidate.spread;
+    plan_.warnings.push_back("column '" + columns_[candidate.column].name +
+                             "' is taken as variances, because its unit is " + candidate.unit);
+    return Spread::variance;
   }
 
   void convert(Quantity q) {
     if (!has(q)) return;
     const Candidate& candidate = of(q).front();
     const SourceColumn& source = columns_[candidate.column];
-    PlannedColumn planned{candidate.column, 1.0, candidate.spread};
+    PlannedColumn planned{candidate.column, 1.0, spread_of(q, candidate)};
     const bool length = is_position(q) || is_uncertainty(q);
-    if (length) planned.factor = length_factor(q, candidate);
-    plan_.used[static_cast<std::size_t>(q)] = planned;
     std::string line = std::string(column_spec(q).name) + " <- '" + source.name + "'";
     if (length) {
+      const auto [factor, unit] = length_unit(q, candidate);
+      planned.factor = factor;
+      if (q == Quantity::x) position_unit_.fill({factor, unit});
+      if (q == Quantity::z) position_unit_[1] = {factor, unit};
       const bool square = planned.spread == Spread::variance;
-      line += square ? " (variance, in (" : " (in ";
-      line += number_text(planned.factor) + " nm" + (square ? ")^2)" : ")");
+      line += square
+                  ? " (variance, " + (unit.find(' ') == std::string::npos ? unit : "(" + unit + ")") + "^2)"
+                  : " (" + unit + ")";
     }
+    plan_.used[static_cast<std::size_t>(q)] = planned;
     plan_.mapping.push_back(line);
-    if (candidate.weak) {
+    if (candidate.claim == Claim::weak) {
       plan_.warnings.push_back(
           "column '" + source.name + "' is taken as " + std::string(column_spec(q).meaning) +
           "; name the right one under input.columns." + std::string(column_spec(q).name));
     }
     if (q == Quantity::particle) {
       const bool smap = parse_heading(source.name).name.rfind("sitenumber", 0) == 0;  // SMAP: 0 is "no site"
-      plan_.unassigned_particle = !options_.unassigned_particle.empty() ? options_.unassigned_particle
-                                  : smap                                ? "0"
-                                                                        : "-1";
+      if (smap) plan_.unassigned_particle = {"0"};
+      if (!options_.unassigned_particle.empty()) plan_.unassigned_particle = options_.unassigned_particle;
     }
   }
 
   void warn_about_units() {
     if (!unitless_positions_.empty()) {
-      plan_.warnings.push_back(unitless_positions_ +
-                               " carry no unit: taken as nm (input.unit says otherwise)");
+      plan_.warnings.push_back(unitless_positions_ + " carry no unit: taken as nm" +
+                               (options_.positions_only ? "" : " (input.unit says otherwise)"));
     }
     if (!unitless_uncertainties_.empty()) {
       plan_.warnings.push_back(unitless_uncertainties_ +
                                " carry no unit: taken in the unit of the positions");
+    }
+  }
+
+  // Columns that speak of uncertainties and have no say, where the ones that are used leave something open.
+  void warn_about_untaken() {
+    if (options_.positions_only) return;
+    const bool axial = !plan_[Quantity::z] || plan_.has_axial_uncertainty();
+    if (plan_.has_uncertainty() && axial) return;
+    std::string names;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const bool taken =
+          std::any_of(plan_.used.begin(), plan_.used.end(),
+                      [&](const auto& planned) { return planned && planned->column == i; }) ||
+          std::find(taken_for_widths_.begin(), taken_for_widths_.end(), i) != taken_for_widths_.end();
+      if (taken || columns_[i].quantity || !sounds_like_uncertainty(parse_heading(columns_[i].name).name))
+        continue;
+      names += (names.empty() ? "'" : ", '") + columns_[i].name + "'";
+    }
+    if (!names.empty()) {
+      plan_.warnings.push_back(names +
+                               ": named like an uncertainty and not used; if it is one, say so under "
+                               "input.columns (sigma_x, sigma_y, sigma_z, sigma_xy)");
     }
   }
 
@@ -283,6 +380,8 @@ class Planner {
   const ReadOptions& options_;
   std::vector<std::vector<Candidate>> candidates_;
   std::string unitless_positions_, unitless_uncertainties_;
+  std::vector<std::size_t> taken_for_widths_;
+  std::array<std::pair<double, std::string>, 2> position_unit_;  // of x and of z
   ColumnPlan plan_;
 };
 
@@ -296,6 +395,26 @@ std::string list_columns(const std::vector<SourceColumn>& columns) {
   }
   if (columns.size() > most) text += " and " + std::to_string(columns.size() - most) + " more";
   return text;
+}
+
+std::size_t find_mapped_column(const std::string& file, const std::vector<SourceColumn>& columns,
+                               const std::string& key, const std::string& name) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].name == name) return i;
+  }
+  const std::string wanted = parse_heading(name).name;
+  std::vector<std::size_t> similar;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (parse_heading(columns[i].name).name == wanted) similar.push_back(i);
+  }
+  if (similar.size() == 1) return similar.front();
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error == std::errc() && end == name.data() + name.size() && number >= 1 && number <= columns.size()) {
+    return number - 1;
+  }
+  throw Error(Fault::input, file, "has no column '" + name + "', which input.columns." + key + " names",
+              "its columns are " + list_columns(columns));
 }
 
 ColumnPlan plan_columns(const std::string& file, const std::vector<SourceColumn>& columns,

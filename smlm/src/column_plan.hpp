@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,19 @@ struct ColumnPlan {
   std::vector<std::size_t> extra;  // columns that are kept
   std::vector<std::string> mapping;
   std::vector<std::string> warnings;
-  std::string unassigned_particle;
+  std::vector<std::string> unassigned_particle;  // beside what always means none
+  std::set<std::string> keys_used;               // of the input section
 
   const std::optional<PlannedColumn>& operator[](Quantity q) const {
     return used[static_cast<std::size_t>(q)];
+  }
+  /// One per axis, or one lateral value; a covariance has both.
+  bool has_uncertainty() const {
+    return full_covariance() || (*this)[Quantity::sigma_x] || (*this)[Quantity::sigma_lateral];
+  }
+  bool has_axial_uncertainty() const {
+    return full_covariance() ? (*this)[Quantity::sigma_zz].has_value()
+                             : (*this)[Quantity::sigma_z].has_value();
   }
   bool full_covariance() const { return (*this)[Quantity::sigma_xx].has_value(); }
 };
@@ -48,6 +58,11 @@ struct ColumnPlan {
 /// size.
 ColumnPlan plan_columns(const std::string& file, const std::vector<SourceColumn>& columns,
                         const ReadOptions& options);
+
+/// The column that `input.columns.<key>` means by `name`: its header, its header without unit, or its 1-based
+/// number. Throws Error(input), with the columns there are.
+std::size_t find_mapped_column(const std::string& file, const std::vector<SourceColumn>& columns,
+                               const std::string& key, const std::string& name);
 
 /// "'x [nm]', 'y [nm]', ..." for messages; at most a dozen.
 std::string list_columns(const std::vector<SourceColumn>& columns);

@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <set>
 
+#include "name_index.hpp"
+#include "smlm/column.hpp"
 #include "smlm/error.hpp"
+#include "smlm/number_text.hpp"
 
 namespace smlm {
 namespace {
@@ -26,9 +29,30 @@ void append_moved(std::vector<T>& all, std::vector<T>& part) {
   }
 }
 
+// Numbers as the words that stand for them.
+void as_words(std::vector<double>& values, std::vector<std::string>& labels) {
+  if (!labels.empty()) return;
+  NameIndex words;
+  for (double& value : values) {
+    if (!std::isnan(value)) value = static_cast<double>(words.of_text(number_text(value)));
+  }
+  labels = words.take();
+}
+
 bool constant_z(const LocalisationTable& table) {
   return std::all_of(table.position_nm.begin(), table.position_nm.end(),
                      [&](const auto& p) { return p[2] == table.position_nm.front()[2]; });
+}
+
+// What a kept column is called where it is compared with those of other files: by its quantity, where it has
+// one, else by its name without case and blanks, and its unit.
+std::string kind_of(const ExtraColumn& column) {
+  const Heading heading = parse_heading(column.name);
+  const auto match = match_heading(heading);
+  const bool known = match && (match->quantity == Quantity::frame || match->quantity == Quantity::photons ||
+                               match->quantity == Quantity::background);
+  if (known) return "?" + std::string(column_spec(match->quantity).name);
+  return heading.name + "?" + (column.unit.empty() ? heading.unit : column.unit);
 }
 
 }  // namespace
@@ -36,28 +60,36 @@ bool constant_z(const LocalisationTable& table) {
 std::vector<std::string> short_names(const std::vector<std::string>& files) {
   std::vector<std::string> names;
   std::vector<std::filesystem::path> folders;
+  std::map<std::string, int> in_one_folder;
   for (const std::string& file : files) {
-    names.push_back(without_extension(file));
-    folders.push_back(std::filesystem::path(file).parent_path());
+    const std::filesystem::path path = std::filesystem::path(file).lexically_normal();
+    folders.push_back(path.parent_path());
+    names.push_back(without_extension(path));
+    ++in_one_folder[(folders.back() / names.back()).string()];
   }
-  for (int levels = 0; levels < 64; ++levels) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (in_one_folder[(folders[i] / names[i]).string()] > 1)
+      names[i] = std::filesystem::path(files[i]).filename().string();
+  }
+  while (true) {
     std::map<std::string, int> count;
     for (const std::string& name : names) ++count[name];
-    bool unique = true;
+    bool longer = false;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      if (count[names[i]] < 2 || folders[i].empty() || folders[i] == folders[i].parent_path()) continue;
-      unique = false;
-      names[i] = folders[i].filename().string() + "/" + names[i];
+      const std::string above = folders[i].filename().string();
+      if (count[names[i]] < 2 || above.empty()) continue;
+      longer = true;
+      names[i] = above + "/" + names[i];
       folders[i] = folders[i].parent_path();
     }
-    if (unique) break;
+    if (!longer) return names;
   }
-  return names;
 }
 
 Concatenation::Concatenation(const std::vector<std::string>& files, const ReadOptions& options)
     : files_(files),
       one_per_file_(options.particles == "one_per_file"),
+      by_column_(options.particles == "column"),
       file_is_channel_(options.channel.per_file),
       names_(short_names(files)) {
   // The same path twice would give two particles one name.
@@ -67,13 +99,18 @@ Concatenation::Concatenation(const std::vector<std::string>& files, const ReadOp
   }
 }
 
-void Concatenation::name_particles(LocalisationTable& table) const {
+void Concatenation::name_particles(LocalisationTable& table) {
+  const bool has_column = !table.particle_names.empty() || !table.unassigned.empty();
   if (one_per_file_) {
+    if (has_column) with_ignored_particle_column_.push_back(files_[appended_]);
     table.particle_names.assign(1, names_[appended_]);
+    table.unassigned.clear();
     std::fill(table.particle.begin(), table.particle.end(), 0);
-  } else if (files_.size() > 1 && !file_is_channel_) {
-    for (std::string& name : table.particle_names) name = names_[appended_] + ":" + name;
+    return;
   }
+  if (by_column_ && !has_column && table.size() > 0) without_particle_column_.push_back(files_[appended_]);
+  if (files_.size() < 2 || file_is_channel_) return;
+  for (std::string& name : table.particle_names) name = names_[appended_] + ":" + name;
 }
 
 void Concatenation::add_channel(LocalisationTable& table) const {
@@ -99,20 +136,42 @@ void Concatenation::append_particles(LocalisationTable& table) {
 }
 
 void Concatenation::append_extra(const LocalisationTable& table, std::size_t rows_before) {
+  std::set<std::size_t> taken;  // two columns of one file stay two
   for (const ExtraColumn& column : table.extra) {
-    auto found = std::find_if(all_.extra.begin(), all_.extra.end(), [&](const ExtraColumn& known) {
-      return known.name == column.name && known.unit == column.unit &&
-             known.labels.empty() == column.labels.empty();
-    });
-    if (found == all_.extra.end()) {
-      all_.extra.push_back({column.name, column.unit, {}, {}});
-      found = all_.extra.end() - 1;
+    const std::string kind = kind_of(column);
+    std::size_t at = 0;
+    while (at < all_.extra.size() && (taken.count(at) > 0 || kind_of(all_.extra[at]) != kind)) ++at;
+    if (at == all_.extra.size()) all_.extra.push_back({column.name, column.unit, {}, {}});
+    taken.insert(at);
+    ExtraColumn& found = all_.extra[at];
+    const bool fresh = found.values.empty();
+    found.values.resize(rows_before, std::nan(""));
+    std::vector<double> values = column.values;
+    std::vector<std::string> labels = column.labels;
+    if (!fresh && found.labels.empty() != labels.empty()) {  // numbers in one file, words in another
+      as_words(found.values, found.labels);
+      as_words(values, labels);
     }
-    found->values.resize(rows_before, std::nan(""));
-    const auto offset = static_cast<double>(found->labels.size());
-    found->labels.insert(found->labels.end(), column.labels.begin(), column.labels.end());
-    for (const double value : column.values) found->values.push_back(value + offset);
+    const auto offset = static_cast<double>(found.labels.size());
+    found.labels.insert(found.labels.end(), labels.begin(), labels.end());
+    for (const double value : values) found.values.push_back(value + offset);
   }
+}
+
+void Concatenation::require_one_depth(const LocalisationTable& table) {
+  if (table.size() == 0) return;
+  if (table.maybe_planar) {
+    maybe_planar_ = true;
+    return;
+  }
+  std::string& first = table.planar ? first_planar_ : first_spatial_;
+  if (first.empty()) first = files_[appended_];
+  if (first_planar_.empty() || first_spatial_.empty()) return;
+  throw Error(Fault::input, files_[appended_],
+              table.planar
+                  ? "is flat (has no z, or one that says nothing) while '" + first_spatial_ + "' has a z"
+                  : "has a z while '" + first_planar_ + "' is flat (has none, or one that says nothing)",
+              "register them apart, or all in the plane with input.planar: true");
 }
 
 void Concatenation::append(LocalisationTable table) {
@@ -123,12 +182,7 @@ void Concatenation::append(LocalisationTable table) {
     if (files.empty()) warning_order_.push_back(warning);
     files.push_back(files_[appended_]);
   }
-  if (appended_ > 0 && table.planar != all_.planar) {
-    throw Error(Fault::input, files_[appended_],
-                std::string("has ") + (table.planar ? "no z" : "a z") + " while '" + files_.front() +
-                    "' has " + (table.planar ? "one" : "none"),
-                "register them apart");
-  }
+  require_one_depth(table);
   const std::size_t rows_before = all_.size();
   const auto file = static_cast<std::uint32_t>(appended_);
   if (appended_ == 0) {
@@ -152,11 +206,52 @@ void Concatenation::append(LocalisationTable table) {
       if (std::find(all_.mapping.begin(), all_.mapping.end(), line) == all_.mapping.end())
         all_.mapping.push_back(line);
     }
+    for (const auto& [name, rows] : table.unassigned) {
+      const auto known =
+          std::find_if(all_.unassigned.begin(), all_.unassigned.end(),
+                       [&, &wanted = name](const auto& entry) { return entry.first == wanted; });
+      if (known == all_.unassigned.end()) {
+        all_.unassigned.emplace_back(name, rows);
+      } else {
+        known->second += rows;
+      }
+    }
+    all_.keys_used.insert(table.keys_used.begin(), table.keys_used.end());
     all_.axial_sigma_assumed = all_.axial_sigma_assumed || table.axial_sigma_assumed;
     all_.sigma_assumed = all_.sigma_assumed || table.sigma_assumed;
+    all_.planar = all_.planar && table.planar;
   }
   for (ExtraColumn& column : all_.extra) column.values.resize(all_.size(), std::nan(""));
   ++appended_;
+}
+
+void Concatenation::warn_about_particles() {
+  const auto some = [](const std::vector<std::string>& files) {
+    return files.front() +
+           (files.size() > 1 ? " and " + std::to_string(files.size() - 1) + " more files" : "");
+  };
+  if (!with_ignored_particle_column_.empty()) {
+    all_.warnings.push_back(
+        some(with_ignored_particle_column_) +
+        ": has a column that names particles, which input.particles: one_per_file ignores");
+  }
+  if (all_.particle_names.empty()) return;
+  if (!without_particle_column_.empty()) {
+    throw Error(Fault::input, some(without_particle_column_),
+                "no column says which localisation belongs to which particle, while other files have one",
+                "name it under input.columns.particle, or leave the file out");
+  }
+  const auto unassigned = std::count(all_.particle.begin(), all_.particle.end(), -1);
+  if (unassigned == 0) return;
+  constexpr std::size_t most_names = 6;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(all_.unassigned.size(), most_names); ++i) {
+    const auto& [name, rows] = all_.unassigned[i];
+    names += (i == 0 ? "" : ", ") + (name.empty() ? "empty" : "'" + name + "'") + " " + std::to_string(rows);
+  }
+  if (all_.unassigned.size() > most_names) names += ", ...";
+  all_.warnings.push_back(std::to_string(unassigned) + " localisations belong to no particle" +
+                          (names.empty() ? "" : " (rows by what they say: " + names + ")"));
 }
 
 LocalisationTable Concatenation::finish() {
@@ -166,16 +261,14 @@ LocalisationTable Concatenation::finish() {
         files.size() > 1 ? " and " + std::to_string(files.size() - 1) + " more files" : "";
     all_.warnings.push_back(files.front() + more + ": " + warning);
   }
-  if (!all_.planar && all_.size() > 0 && constant_z(all_)) {
+  if (!first_planar_.empty() || (maybe_planar_ && first_spatial_.empty() && constant_z(all_))) {
+    if (first_planar_.empty())
+      all_.warnings.emplace_back("z is the same everywhere: the table is registered in the plane");
     all_.planar = true;
     all_.axial_sigma_assumed = false;
     for (auto& position : all_.position_nm) position[2] = 0;
-    all_.warnings.push_back("z is the same everywhere: the table is registered in the plane");
   }
-  const auto unassigned = std::count(all_.particle.begin(), all_.particle.end(), -1);
-  if (unassigned > 0 && !all_.particle_names.empty()) {
-    all_.warnings.push_back(std::to_string(unassigned) + " localisations belong to no particle");
-  }
+  warn_about_particles();
   return std::move(all_);
 }
 

@@ -20,23 +20,28 @@ class Concatenation {
   LocalisationTable finish();
 
  private:
-  void name_particles(LocalisationTable& table) const;
+  void name_particles(LocalisationTable& table);
+  void require_one_depth(const LocalisationTable& table);
+  void warn_about_particles();
   void add_channel(LocalisationTable& table) const;
   void append_particles(LocalisationTable& table);
   void append_extra(const LocalisationTable& table, std::size_t rows_before);
 
   const std::vector<std::string>& files_;
-  bool one_per_file_;
+  bool one_per_file_, by_column_;
   bool file_is_channel_;            // of the same particles
   std::vector<std::string> names_;  // of the files, as short as keeps them apart
   LocalisationTable all_;
   std::size_t appended_ = 0;
+  std::string first_planar_, first_spatial_;  // files that decide whether the whole is planar
+  bool maybe_planar_ = false;                 // some file has too few rows to tell
+  std::vector<std::string> without_particle_column_, with_ignored_particle_column_;
   std::vector<std::string> warning_order_;
   std::map<std::string, std::vector<std::string>> warned_files_;
 };
 
-/// What files are called in the names of particles: the file name without its extensions, with as many of
-/// the folders above as tell equal ones apart.
+/// What files are called in the names of particles: the file name without its extensions, with them where two
+/// in one folder are else alike, and with as many of the folders above as tell equal ones apart.
 std::vector<std::string> short_names(const std::vector<std::string>& files);
 
 }  // namespace smlm

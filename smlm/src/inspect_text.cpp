@@ -69,7 +69,10 @@ std::string to_text(const Inspection& in) {
             std::to_string(rejection.first_row) + " of " + in.files.at(rejection.file) + "\n";
   }
   for (const std::string& warning : in.warnings) text += "warning: " + warning + "\n";
-  return text;
+  text += in.obstacle.empty() ? "polar run would start: " + std::to_string(in.particles) + " particles" +
+                                    (in.planar ? ", in the plane" : "")
+                              : "polar run would not start: " + in.obstacle;
+  return text + "\n";
 }
 
 std::string to_json(const Inspection& in) {
@@ -86,7 +89,8 @@ std::string to_json(const Inspection& in) {
                       {"axial_sigma_assumed", in.axial_sigma_assumed},
                       {"sigma_assumed", in.sigma_assumed},
                       {"mapping", in.mapping},
-                      {"warnings", in.warnings}};
+                      {"warnings", in.warnings},
+                      {"obstacle", in.obstacle}};
   json["columns"] = nlohmann::json::array();
   for (const ColumnSummary& column : in.columns) {
     nlohmann::json entry = json_of(column.summary);

@@ -1,7 +1,8 @@
-// Numbers the distinct names or numbers of a column, in order of first appearance.
+// Numbers the distinct names of a column, in order of first appearance.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -11,24 +12,17 @@ namespace smlm {
 
 class NameIndex {
  public:
-  /// "3", "3.0" and the number 3 are the same name; any other text is itself.
+  /// Names are compared as text: "1", "1.0" and "01" are three.
   std::int64_t of_text(std::string_view text);
-  std::int64_t of_number(double value);
 
-  const std::vector<std::string>& names() const { return names_; }
-  std::vector<std::string> take() { return std::move(names_); }
+  std::size_t size() const { return names_.size(); }
+  const std::string& name(std::int64_t index) const { return names_[static_cast<std::size_t>(index)]; }
+  std::vector<std::string> take();
 
  private:
-  std::int64_t insert(const std::string& name);
-
-  std::vector<std::string> names_;
-  std::unordered_map<std::string, std::int64_t> by_name_;
-  std::unordered_map<double, std::int64_t> by_number_;
-  double last_number_ = 0;
-  std::int64_t last_index_ = -1;  // of last_number_; rows of one particle mostly follow each other
+  std::deque<std::string> names_;  // never moves a name, so that the map can look into it
+  std::unordered_map<std::string_view, std::int64_t> by_name_;
+  std::int64_t last_ = -1;  // rows of one particle mostly follow each other
 };
-
-/// The shortest decimal text of a number, the same in every locale: "3", "0.5".
-std::string number_text(double value);
 
 }  // namespace smlm

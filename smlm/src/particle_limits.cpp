@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "name_index.hpp"
+#include "smlm/number_text.hpp"
 
 namespace smlm {
 namespace {

@@ -1,12 +1,17 @@
 #include "smlm/pick.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
 #include "smlm/error.hpp"
+#include "smlm/number_text.hpp"
+#include "smlm/points.hpp"
 #include "smlm/table_reader.hpp"
+#include "smlm/units.hpp"
+#include "text/line_reader.hpp"
 
 namespace smlm {
 namespace {
@@ -104,6 +109,87 @@ Peak climb(const Grid& grid, const std::vector<Centre>& points, Centre centre, d
   return {centre, n};
 }
 
+// A ring around a pick as far as this, in radii, should hold next to nothing of its particle.
+constexpr double ring = 1.25;
+constexpr double most_in_ring = 0.1;  // of the pick's localisations
+
+std::string span(const std::vector<double>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return number_text(std::round(*least)) + " to " + number_text(std::round(*most)) + " nm";
+}
+
+// "x 0 to 100 nm, y ..." of points.
+template <class AllPoints>
+std::string spans(const AllPoints& points) {
+  std::vector<double> x, y;
+  for (const auto& point : points) {
+    x.push_back(point[0]);
+    y.push_back(point[1]);
+  }
+  return "x " + span(x) + ", y " + span(y);
+}
+
+void warn_about_picks(LocalisationTable& table, const std::vector<Centre>& centres,
+                      const std::vector<std::size_t>& inside, const std::vector<std::size_t>& around,
+                      double radius_nm) {
+  const auto empty = static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 0U));
+  if (!centres.empty() && empty == centres.size() && table.size() > 0) {
+    throw Error(
+        Fault::input, table.files.front(),
+        "none of the " + std::to_string(centres.size()) + " picks holds a localisation: the centres are at " +
+            spans(centres) + ", the localisations at " + spans(table.position_nm),
+        "input.pick.centres and the table must be in one frame (units: input.unit, input.pixel_size_nm)");
+  }
+  if (empty > 0) {
+    table.warnings.push_back(std::to_string(empty) + " of " + std::to_string(centres.size()) +
+                             " picks hold no localisation");
+  }
+  std::size_t cut = 0;
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    cut += static_cast<double>(around[i]) > most_in_ring * static_cast<double>(inside[i]) && inside[i] > 0
+               ? 1U
+               : 0U;
+  if (10 * cut > centres.size() - empty) {
+    table.warnings.push_back("in " + std::to_string(cut) + " of " + std::to_string(centres.size() - empty) +
+                             " picks the localisations go on right outside the radius of " +
+                             number_text(radius_nm) +
+                             " nm: is it too small for the particles? (input.pick.radius_nm)");
+  }
+}
+
+// The regions that Picasso's Render saves: "Centers:" with pairs of numbers, in block or flow style.
+bool is_picasso_regions(const std::string& path) {
+  const std::string bytes = read_head(path).bytes;
+  return bytes.rfind("Centers:", 0) == 0 || bytes.find("\nCenters:") != std::string::npos;
+}
+
+std::vector<Centre> read_picasso_regions(const std::string& path) {
+  LineReader lines(path);
+  std::vector<double> numbers;
+  bool within = false;
+  for (std::string_view line; lines.next(line);) {
+    const bool is_key = !line.empty() && line.front() != ' ' && line.front() != '-' && line.front() != '[' &&
+                        line.front() != ']';
+    if (is_key) within = line.rfind("Centers:", 0) == 0;
+    if (!within) continue;
+    if (is_key) line.remove_prefix(std::string_view("Centers:").size());
+    while (!line.empty()) {
+      const auto start = line.find_first_of("-0123456789.");
+      if (start == std::string_view::npos) break;
+      line.remove_prefix(start);
+      double value = 0;
+      const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+      if (error == std::errc()) numbers.push_back(value);
+      line.remove_prefix(error == std::errc() ? static_cast<std::size_t>(end - line.data()) : 1);
+    }
+  }
+  if (numbers.empty() || numbers.size() % 2 != 0)
+    throw Error(Fault::input, path, "its Centers are not pairs of numbers", "save the pick regions again");
+  std::vector<Centre> centres;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) centres.push_back({numbers[i], numbers[i + 1]});
+  return centres;
+}
+
 void require_radius(double radius_nm) {
   if (!(radius_nm > 0 && radius_nm <= 1e9)) {
     throw Error(Fault::usage, "input.pick.radius_nm", "must be positive",
@@ -113,7 +199,38 @@ void require_radius(double radius_nm) {
 
 }  // namespace
 
-std::vector<Centre> read_centres(const std::string& path) { return lateral_positions(read_table(path, {})); }
+std::vector<Centre> read_centres(const std::string& path, const ReadOptions& options,
+                                 LocalisationTable& table) {
+  // Units but pixels have round sizes.
+  const bool in_pixels = units::length_of(table.position_unit_nm) == units::Length::pixel;
+  ReadOptions own = options;
+  own.format = "auto";
+  own.columns.clear();
+  if (!(own.pixel_size_nm > 0) && in_pixels) own.pixel_size_nm = table.position_unit_nm;
+  if (is_picasso_regions(path)) {
+    if (!(own.pixel_size_nm > 0))
+      throw Error(Fault::input, path, "is in camera pixels and their size is not known",
+                  "set input.pixel_size_nm");
+    table.keys_used.insert("pixel_size_nm");
+    std::vector<Centre> centres = read_picasso_regions(path);
+    for (Centre& centre : centres) {
+      for (double& value : centre) value *= own.pixel_size_nm;
+    }
+    return centres;
+  }
+  if (own.unit.empty()) own.unit = units::name(units::length_of(table.position_unit_nm));
+  const Points points = read_points(path, own);
+  if (points.keys_used.count("unit") > 0 && options.unit.empty()) {
+    table.warnings.push_back("the centres of the picks carry no unit: taken in the table's own, " +
+                             (in_pixels ? "px = " + number_text(own.pixel_size_nm) + " nm" : own.unit));
+  }
+  for (const char* key : {"unit", "pixel_size_nm"}) {
+    if (points.keys_used.count(key) > 0) table.keys_used.insert(key);
+  }
+  std::vector<Centre> centres;
+  for (const auto& position : points.position_nm) centres.push_back({position[0], position[1]});
+  return centres;
+}
 
 std::vector<Centre> find_centres(const LocalisationTable& table, const PickOptions& options) {
   require_radius(options.radius_nm);
@@ -147,20 +264,30 @@ std::vector<Centre> find_centres(const LocalisationTable& table, const PickOptio
 
 void pick_particles(LocalisationTable& table, const std::vector<Centre>& centres, double radius_nm) {
   require_radius(radius_nm);
-  const Grid grid(centres, radius_nm);
+  const Grid grid(centres, ring * radius_nm);
   table.particle_names.clear();
+  table.unassigned.clear();
   for (std::size_t i = 1; i <= centres.size(); ++i) table.particle_names.push_back(std::to_string(i));
   table.particle.assign(table.size(), -1);
+  std::vector<std::size_t> inside(centres.size(), 0), around(centres.size(), 0);
   for (std::size_t row = 0; row < table.size(); ++row) {
     double nearest = std::numeric_limits<double>::infinity();
+    std::uint32_t pick = 0;
     grid.within({table.position_nm[row][0], table.position_nm[row][1]},
                 [&](std::uint32_t index, double distance) {
                   if (distance < nearest) {
                     nearest = distance;
-                    table.particle[row] = index;
+                    pick = index;
                   }
                 });
+    if (nearest <= square(radius_nm)) {
+      table.particle[row] = pick;
+      ++inside[pick];
+    } else if (std::isfinite(nearest)) {
+      ++around[pick];
+    }
   }
+  warn_about_picks(table, centres, inside, around, radius_nm);
 }
 
 }  // namespace smlm

@@ -42,7 +42,7 @@ std::vector<std::string> violations(const ReadOptions& options) {
   for (const std::string& fault : violations(options.particle_limits))
     faults.push_back("particle_limits." + fault);
   if (!options.unit.empty() && !units::parse_length(options.unit)) {
-    faults.push_back("unit: '" + options.unit + "' is not a length (nm, um, mm, m, px)");
+    faults.push_back("unit: '" + options.unit + "' is not a length (nm, um, mm, m, px, angstrom)");
   }
   if (!(options.pixel_size_nm >= 0 && options.pixel_size_nm < 1e6)) {
     faults.emplace_back("pixel_size_nm: must be positive, or 0 for what the file says");
@@ -57,9 +57,9 @@ std::vector<std::string> violations(const ReadOptions& options) {
     const std::string where = "columns." + key;
     if (!quantity_named(key)) faults.push_back(where + ": is not a quantity that is read");
     if (mapping.name.empty()) faults.push_back(where + ".name: must not be empty");
-    check_word(faults, where + ".kind", mapping.kind, {"std", "variance"});
-    if (key != "particle" && !units::parse_length(mapping.unit.substr(0, mapping.unit.find('^')))) {
-      faults.push_back(where + ".unit: '" + mapping.unit + "' is not a length (nm, um, mm, m, px)");
+    check_word(faults, where + ".kind", mapping.kind, {"", "std", "variance"});
+    if (!mapping.unit.empty() && !units::parse_length(units::without_square(mapping.unit))) {
+      faults.push_back(where + ".unit: '" + mapping.unit + "' is not a length (nm, um, mm, m, px, angstrom)");
     }
   }
   return faults;

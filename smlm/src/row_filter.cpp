@@ -5,9 +5,9 @@
 #include <functional>
 #include <numeric>
 
-#include "name_index.hpp"
 #include "smlm/error.hpp"
 #include "smlm/kept_column.hpp"
+#include "smlm/number_text.hpp"
 #include "table_rows.hpp"
 
 namespace smlm {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,17 @@ class TableBuilder {
 
   /// The number that stands for a word in a column of text.
   double label(std::size_t column, std::string_view word);
+  /// Makes a kept column one of text, because a row has a word in it: numbers so far become words.
+  void make_text(std::size_t column, std::vector<double>& block_values);
+  /// Whether a value of the particle column (see label()) stands for no particle.
+  bool is_no_particle(double value);
+  /// Makes room for about so many rows.
+  void reserve(std::uint64_t rows);
   /// Error(resource) where the table would not fit into the machine's memory with this many rows.
   void require_memory_for(std::uint64_t rows) const;
   /// Appends the rows that can be used. A row that cannot is an Error(input) naming file, row and column, or
-  /// a counted rejection where options.drop_nonfinite asks for it.
+  /// a counted rejection where options.drop_nonfinite asks for it or the row belongs to no particle. What
+  /// only z and its uncertainty lack is judged by finish(), when it is known whether z says anything.
   void append(const RowBlock& block);
   /// Rows that the source itself marks as unusable.
   void reject(const std::string& reason, std::uint64_t row, std::uint64_t rows = 1);
@@ -44,28 +52,57 @@ class TableBuilder {
   LocalisationTable finish();
 
  private:
+  enum class Reason : std::uint8_t {
+    none,
+    position_not_finite,
+    position_out_of_range,
+    sigma_not_finite,
+    sigma_not_positive,
+    sigma_out_of_range,
+    sigma_z_infinite,  // where the format says "unknown" so
+    not_positive_definite
+  };
   struct Problem {
-    std::string reason;
+    Reason reason = Reason::none;
     std::size_t column = 0;
   };
-  bool convert_row(const RowBlock& block, std::size_t row, std::array<double, 3>& position,
-                   Covariance& covariance, Problem& problem) const;
-  bool standard_deviations(const RowBlock& block, std::size_t row, Covariance& covariance,
-                           Problem& problem) const;
-  bool sigma(const RowBlock& block, std::size_t row, const PlannedColumn& planned, double& value,
-             Problem& problem) const;
-  bool full_covariance(const RowBlock& block, std::size_t row, Covariance& covariance,
-                       Problem& problem) const;
-  [[noreturn]] void fail(const RowBlock& block, std::size_t row, const Problem& problem) const;
+  /// A row that is unusable unless the table turns out to be planar.
+  struct Suspended {
+    std::uint64_t row;  // of the table
+    Reason reason;
+  };
+  static std::string words(Reason reason, bool of_no_particle);
+
+  Problem lateral_part(const RowBlock& block, std::size_t row, std::array<double, 3>& position,
+                       Covariance& covariance) const;
+  Problem axial_part(const RowBlock& block, std::size_t row, std::array<double, 3>& position,
+                     Covariance& covariance) const;
+  Problem sigma(const RowBlock& block, std::size_t row, const PlannedColumn& planned, double& value) const;
+  std::string failure(const RowBlock& block, std::size_t row, const Problem& problem) const;
+  bool excused(const Problem& problem, std::int64_t particle) const;
   std::int64_t particle_of(const RowBlock& block, std::size_t row);
+  std::int64_t particle_of_name(std::string_view name);
+  /// Decides whether z says anything; true when the table is planar because it does not.
+  bool flatten();
+  void drop_suspended();
+  void strip_decimals();
+  void warn_about_similar_names();
 
   std::string where_;
   std::vector<SourceColumn> columns_;
   ColumnPlan plan_;
-  bool drop_, planar_, infinite_sigma_z_rejected_ = false;
+  bool drop_, planar_, positions_only_, infinite_sigma_z_rejected_ = false;
   double assumed_sigma_nm_;
   NameIndex particles_;
+  std::vector<std::int64_t> particle_of_label_;  // of the particle column's labels; -1: none
+  double last_number_ =
+      std::numeric_limits<double>::quiet_NaN();  // rows of one particle mostly follow each other
+  std::int64_t last_particle_ = -1;
+  NameIndex none_names_;
+  std::vector<std::uint64_t> none_rows_;  // how often each was met
   std::vector<NameIndex> labels_;
+  std::vector<Suspended> suspended_;
+  std::string first_failure_;  // of a suspended row that is not excused
   LocalisationTable table_;
 };
 

@@ -4,6 +4,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <map>
+#include <optional>
 
 #include "concatenate.hpp"
 #include "mat_v5.hpp"
@@ -12,8 +14,10 @@
 #include "smlm/h5/file.hpp"
 #include "smlm/inspect.hpp"
 #include "smlm/isolation.hpp"
+#include "smlm/number_text.hpp"
 #include "smlm/pick.hpp"
 #include "smlm/regular_file.hpp"
+#include "smlm/repetitions.hpp"
 
 namespace smlm {
 namespace {
@@ -53,6 +57,68 @@ void refuse_known(const FileHead& head) {
     refuse("is a Python pickle, which can run code and is never opened", "write it as CSV or HDF5");
   }
   if (starts("II*") || starts({"MM\0*", 4})) refuse("is a TIFF image, not a table", "localise it first");
+}
+
+// Files that hold the same, whatever they are called and however they are packed.
+class EqualFiles {
+ public:
+  void refuse(const FileHead& head) {
+    std::vector<File>& alike = files_[std::hash<std::string>()(head.bytes)];
+    for (File& other : alike) {
+      if (!other.hash) other.hash = content_hash(other.path);
+      const std::uint64_t own = content_hash(head.path);
+      if (own != *other.hash) continue;
+      throw Error(Fault::input, head.path, "holds the same as '" + other.path + "'",
+                  "give it once: every localisation would count twice");
+    }
+    alike.push_back({head.path, {}});
+  }
+
+ private:
+  struct File {
+    std::string path;
+    std::optional<std::uint64_t> hash;  // only where another file begins alike
+  };
+  std::map<std::size_t, std::vector<File>> files_;  // by how they begin
+};
+
+// Keys that somebody set and that had no say.
+std::vector<std::string> keys_without_effect(const ReadOptions& options, const LocalisationTable& table) {
+  const ReadOptions standard;
+  const auto listed = [](const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    return text;
+  };
+  struct Key {
+    const char* name;
+    bool set;
+    std::string value, why;
+  };
+  const Key keys[]{
+      {"unit", options.unit != standard.unit, options.unit, "the tables say all their units"},
+      {"pixel_size_nm", options.pixel_size_nm != standard.pixel_size_nm, number_text(options.pixel_size_nm),
+       "nothing is in pixels"},
+      {"sigma_kind", options.sigma_kind != standard.sigma_kind, options.sigma_kind,
+       "the tables say what their uncertainties are"},
+      {"lpz_unit", options.lpz_unit != standard.lpz_unit, options.lpz_unit, "there is no lpz of Picasso's"},
+      {"planar", options.planar, "true", "the tables have no z"},
+      {"assumed_sigma_nm", options.assumed_sigma_nm != standard.assumed_sigma_nm,
+       number_text(options.assumed_sigma_nm), "the tables have uncertainties"},
+      {"minflux_z_factor", options.minflux_z_factor != standard.minflux_z_factor,
+       number_text(options.minflux_z_factor), "there is no z of MINFLUX's"},
+      {"unassigned_particle", !options.unassigned_particle.empty(), listed(options.unassigned_particle),
+       "no row says so"},
+      {"pick.radius_nm", options.particles != "picked" && options.pick.radius_nm != standard.pick.radius_nm,
+       number_text(options.pick.radius_nm), "input.particles is not picked"},
+      {"pick.centres", options.particles != "picked" && !options.pick.centres.empty(), options.pick.centres,
+       "input.particles is not picked"}};
+  std::vector<std::string> warnings;
+  for (const Key& key : keys) {
+    if (key.set && table.keys_used.count(key.name) == 0)
+      warnings.push_back("input." + std::string(key.name) + ": " + key.value + " has no effect: " + key.why);
+  }
+  return warnings;
 }
 
 }  // namespace
@@ -114,6 +180,7 @@ LocalisationTable read_tables(const std::vector<std::string>& files, const ReadO
                 "read one file at a time");
   }
   Concatenation all(files, options);
+  EqualFiles equal;
   for (const std::string& file : files) {
     const FileHead head = read_head(file);
     if (needs_library(head)) {
@@ -123,17 +190,20 @@ LocalisationTable read_tables(const std::vector<std::string>& files, const ReadO
     const TableReader& reader = find_reader(head, options);
     LocalisationTable table = reader.read(file, options);
     table.formats.assign(1, std::string(reader.name));
+    if (files.size() > 1 && table.size() > 0) equal.refuse(head);
     filter_rows(table, options.filters);
     merge_blinks(table, options.group);
     if (picked) {
       const auto centres = options.pick.centres.empty() ? find_centres(table, options.pick)
-                                                        : read_centres(options.pick.centres);
+                                                        : read_centres(options.pick.centres, options, table);
       pick_particles(table, centres, options.pick.radius_nm);
     }
     all.append(std::move(table));
   }
   LocalisationTable table = all.finish();
-  for (std::string& warning : implausibilities(table)) table.warnings.push_back(std::move(warning));
+  for (auto& more :
+       {keys_without_effect(options, table), implausibilities(table), describe(find_repetitions(table))})
+    table.warnings.insert(table.warnings.end(), more.begin(), more.end());
   return table;
 }
 

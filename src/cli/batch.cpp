@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "command.hpp"
+#include "command_line.hpp"
 #include "reporter.hpp"
 #include "signals.hpp"
 
@@ -24,7 +25,9 @@ int run(const Arguments& a) {
   Reporter reporter(choose_style(a.quiet, a.json_log));
   BatchConfig config = load_batch_config(a.config, a.overrides);
   if (!a.output.empty()) move_batch(config, a.output);
-  const BatchOutcome outcome = run_batch(config, a.flags, reporter);
+  BatchFlags flags = a.flags;
+  flags.command = command_line();
+  const BatchOutcome outcome = run_batch(config, flags, reporter);
   if (outcome.cancelled) {
     reporter.note("stopped by signal " + std::to_string(received_signal()) +
                   ": the same command goes on from here");

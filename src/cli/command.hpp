@@ -13,6 +13,7 @@ void add_run(CLI::App& app, Action& action);
 void add_apply(CLI::App& app, Action& action);
 void add_batch(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
+void add_report(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
 void add_inspect(CLI::App& app, Action& action);

@@ -64,6 +64,7 @@ int run(const Arguments& a) {
   options.symmetry = !a.symmetry.empty() ? a.symmetry : simulated ? summary.symmetry : "none";
   const std::vector<PoseRow> estimate = read_pose_table(poses);
   const Comparison c = compare_poses(estimate, read_pose_table(a.truth), options);
+  if (!c.note.empty()) std::fprintf(stderr, "note: %s\n", c.note.c_str());
   if (a.json)
     std::printf("%s\n", as_json(c, options.symmetry, summary.cramer_rao_pair_median_deg).dump(2).c_str());
   else

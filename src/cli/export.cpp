@@ -5,6 +5,7 @@
 #include "command.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "polar/results/result_file.hpp"
+#include "record_path.hpp"
 #include "smlm/error.hpp"
 #include "smlm/isolation.hpp"
 
@@ -18,19 +19,20 @@ struct Arguments {
 };
 
 int run(const Arguments& a) {
-  std::error_code unseen;  // whoever opens it says why
-  const bool is_directory = std::filesystem::is_directory(a.result, unseen);
-  const std::string record = is_directory ? a.result + "/results.h5" : a.result;
+  const std::string record = record_path(a.result);
   const std::filesystem::path beside = std::filesystem::path(record).parent_path();
   const std::string output = !a.output.empty() ? a.output : beside.empty() ? "." : beside.string();
+  std::error_code unseen;  // what cannot be seen is no directory to write to
   if (!std::filesystem::is_directory(output, unseen))
     throw smlm::Error(smlm::Fault::io, output, "no such directory", "create it first");
   ResultRecord result = smlm::read_isolated(record, [&] { return read_result_file(record); });
   result.render.voxel_nm = a.voxel_nm;
+  std::vector<std::string> notes = result.warnings;  // what was assumed holds for every format
   for (const std::string& format : a.formats)
     for (const std::string& name :
-         write_format(format, output, {result.superparticle, result.render, result.poses}))
+         write_format(format, output, {result.superparticle, result.render, result.poses}, notes))
       std::printf("%s/%s\n", output.c_str(), name.c_str());
+  for (const std::string& note : notes) std::fprintf(stderr, "warning: %s\n", note.c_str());
   return 0;
 }
 }  // namespace

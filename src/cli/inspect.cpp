@@ -22,15 +22,30 @@ bool is_configuration(const std::string& file) {
   return ends_with(".yaml") || ends_with(".yml");
 }
 
+// "cells/*.csv: 3 files", and what a user of another system may have expected of it.
+std::string line_of(const MatchedPattern& p) {
+  std::string line = p.pattern + ": " + std::to_string(p.files) + (p.files == 1 ? " file" : " files");
+  if (p.but_for_case.empty()) return line;
+  return line + " (not " + p.but_for_case.front() +
+         (p.but_for_case.size() > 1 ? " and " + std::to_string(p.but_for_case.size() - 1) + " more" : "") +
+         ", whose names differ in upper and lower case)";
+}
+
 int run(const Arguments& a) {
   std::vector<std::string> files = a.files;
   smlm::ReadOptions read;
+  std::vector<MatchedPattern> patterns;
   if (files.size() == 1 && is_configuration(files[0])) {
     const RunConfig config = load_run_config(files[0], a.overrides);
     files = config.files;
     read = config.read;
+    patterns = config.patterns;
   } else {
     read = read_options(a.overrides);
+  }
+  if (!a.json) {
+    for (const MatchedPattern& p : patterns) std::printf("%s\n", line_of(p).c_str());
+    std::fflush(stdout);
   }
   const smlm::Inspection inspection = smlm::inspect(smlm::read_tables(files, read));
   std::printf("%s\n", (a.json ? smlm::to_json(inspection) : smlm::to_text(inspection)).c_str());

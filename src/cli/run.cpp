@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "command.hpp"
+#include "command_line.hpp"
 #include "polar/core/parallel.hpp"
 #include "reporter.hpp"
 #include "signals.hpp"
@@ -25,7 +26,9 @@ int run(const Arguments& a) {
   Reporter reporter(choose_style(a.quiet, a.json_log));
   RunConfig config = load_run_config(a.config, a.overrides);
   if (!a.output.empty()) config.output.directory = a.output;
-  const RunOutcome outcome = polar::run(config, a.flags, reporter);
+  RunFlags flags = a.flags;
+  flags.command = command_line();
+  const RunOutcome outcome = polar::run(config, flags, reporter);
   if (outcome.cancelled) {
     reporter.note("stopped by signal " + std::to_string(received_signal()) + ": no result was written" +
                   (outcome.resumable ? "; --resume continues from the checkpoint" : ""));

@@ -1,9 +1,6 @@
 #include "polar/core/sha256.hpp"
 
-#include <array>
-#include <cstdint>
-#include <cstring>
-#include <vector>
+#include <algorithm>
 
 namespace polar {
 
@@ -43,23 +40,40 @@ void absorb(std::array<std::uint32_t, 8>& state, const unsigned char* block) {
 }
 }  // namespace
 
-std::string sha256(const void* data, std::size_t bytes) {
-  std::array<std::uint32_t, 8> state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                                        0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+void Sha256::add(const void* data, std::size_t bytes) {
   const auto* p = static_cast<const unsigned char*>(data);
-  std::size_t left = bytes;
-  for (; left >= kBlock; left -= kBlock, p += kBlock) absorb(state, p);
+  bytes_ += bytes;
+  if (!rest_.empty()) {
+    const std::size_t taken = std::min(bytes, kBlock - rest_.size());
+    rest_.insert(rest_.end(), p, p + taken);
+    p += taken, bytes -= taken;
+    if (rest_.size() < kBlock) return;
+    absorb(state_, rest_.data());
+    rest_.clear();
+  }
+  for (; bytes >= kBlock; bytes -= kBlock, p += kBlock) absorb(state_, p);
+  rest_.assign(p, p + bytes);
+}
+
+std::string Sha256::digits() const {
+  std::array<std::uint32_t, 8> state = state_;
   // The tail: a one bit, zeros, and the length in bits.
-  std::vector<unsigned char> tail(left < kBlock - 8 ? kBlock : 2 * kBlock, 0);
-  if (left > 0) std::memcpy(tail.data(), p, left);
-  tail[left] = 0x80;
-  const std::uint64_t bits = std::uint64_t{bytes} * 8;
+  std::vector<unsigned char> tail(rest_.size() < kBlock - 8 ? kBlock : 2 * kBlock, 0);
+  std::copy(rest_.begin(), rest_.end(), tail.begin());
+  tail[rest_.size()] = 0x80;
+  const std::uint64_t bits = bytes_ * 8;
   for (std::size_t i = 0; i < 8; ++i) tail[tail.size() - 1 - i] = static_cast<unsigned char>(bits >> (8 * i));
   for (std::size_t i = 0; i < tail.size(); i += kBlock) absorb(state, tail.data() + i);
   std::string text;
   for (const std::uint32_t word : state)
     for (int shift = 28; shift >= 0; shift -= 4) text += "0123456789abcdef"[(word >> shift) & 15u];
   return text;
+}
+
+std::string sha256(const void* data, std::size_t bytes) {
+  Sha256 hash;
+  hash.add(data, bytes);
+  return hash.digits();
 }
 
 }  // namespace polar

@@ -1,5 +1,6 @@
 #include "polar/core/symmetry_group.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -37,6 +38,14 @@ int fold(const std::string& name) {
   return parsed.ec == std::errc() && parsed.ptr == end && n >= 1 && n <= kMostUnits ? n : 0;
 }
 }  // namespace
+
+bool in_asymmetric_unit(const std::vector<Eigen::Matrix3d>& group, const Eigen::Matrix3f& rotation) {
+  constexpr float kRounding = 1e-5f;  // of a trace
+  const float own = rotation.trace();
+  return std::none_of(group.begin(), group.end(), [&](const Eigen::Matrix3d& g) {
+    return (g.cast<float>() * rotation).trace() > own + kRounding;
+  });
+}
 
 bool is_symmetry_group(const std::string& name) {
   return name == "none" || name == "T" || name == "O" || name == "I" ||

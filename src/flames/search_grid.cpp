@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polar/core/symmetry_group.hpp"
 #include "polar/flames/rotation_grid.hpp"
 
 namespace polar {
@@ -19,14 +20,19 @@ Eigen::Matrix3f grid_turn(bool planar, KeyedRandom random) {
                 : Eigen::Matrix3f(random.rotation().cast<float>());
 }
 
-SearchGrid search_grid(int rotations, bool planar) {
-  const std::vector<Eigen::Quaternionf> q = planar ? planar_rotations(rotations) : super_fibonacci(rotations);
-  const int k = planar
-                    ? kPlanarNeighbours
-                    : std::max(kFewestNeighbours, static_cast<int>(std::lround(kNeighbourShare * rotations)));
+SearchGrid search_grid(int rotations, bool planar, const std::vector<Eigen::Matrix3d>& group) {
+  std::vector<Eigen::Quaternionf> q = planar ? planar_rotations(rotations) : super_fibonacci(rotations);
+  if (group.size() > 1)
+    q.erase(std::remove_if(q.begin(), q.end(),
+                           [&](const auto& r) { return !in_asymmetric_unit(group, r.toRotationMatrix()); }),
+            q.end());
+  const int usual =
+      planar ? kPlanarNeighbours
+             : std::max(kFewestNeighbours, static_cast<int>(std::lround(kNeighbourShare * rotations)));
+  const int k = std::min(usual, static_cast<int>(q.size()) - 1);
   SearchGrid grid;
   grid.graph =
-      rotations >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory()) : neighbour_graph(q, k);
+      static_cast<int>(q.size()) >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory()) : neighbour_graph(q, k);
   for (const Eigen::Quaternionf& r : q) grid.rotation.push_back(r.toRotationMatrix());
   return grid;
 }

@@ -121,7 +121,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
   if (planar) origin_.z() = 0;
   const auto voxels = static_cast<std::size_t>(dim_[0] * dim_[1] * dim_[2]);
   stride_ = (voxels + kernel::kBlock - 1) / kernel::kBlock * kernel::kBlock;
-  value_.resize(stride_ * direction_.size() * classes.sigma.size());
+  value_.resize(stride_ * direction_.size() * classes.sigma.size() + 1);  // a look-up reads one more
 
   const auto background =
       static_cast<float>(std::max(mixture.outlier_fraction * mixture.outlier_density, 1e-12));

@@ -179,24 +179,40 @@ void rotate(const float* x, const float* y, const float* z, int n, const float* 
   }
 }
 
+// The values at 2-byte places, one a lane. A gather reads the two bytes after a place too.
+inline I gathered(const short* value, I voxel) {
+#if defined(__AVX512F__)
+  // All lanes are read; the masked form alone does not leave its source undefined.
+  const __m512i pair = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), 0xffff,
+                                                   reinterpret_cast<const __m512i&>(voxel), value, 2);
+  return reinterpret_cast<const I&>(pair) << 16 >> 16;
+#elif defined(__AVX2__)
+  const __m256i pair =
+      _mm256_i32gather_epi32(reinterpret_cast<const int*>(value), reinterpret_cast<const __m256i&>(voxel), 2);
+  return reinterpret_cast<const I&>(pair) << 16 >> 16;
+#else
+  I out;
+  for (int i = 0; i < kLanes; ++i) out[i] = value[voxel[i]];
+  return out;
+#endif
+}
+
 void nearest_sums(const float* u, const float* v, const float* w, int n, const float* offset, int shifts,
                   const int* dim, const short* value, long long* sum_out) {
   const float width = static_cast<float>(dim[0]), height = static_cast<float>(dim[1]);
   const float high_u = width - 1, high_v = height - 1, high_w = static_cast<float>(dim[2] - 1);
-  int voxel[kMostPoints];  // in memory: lanes are slow to take out of a register
   for (int s = 0; s < shifts; ++s, offset += 3) {
+    I total{};
     for (int k = 0; k < n; k += kLanes) {
       const V a = nearest(load(u + k) + offset[0], high_u), b = nearest(load(v + k) + offset[1], high_v),
               c = nearest(load(w + k) + offset[2], high_w);
-      *reinterpret_cast<I*>(voxel + k) = __builtin_convertvector((c * height + b) * width + a, I);
+      const I here = gathered(value, __builtin_convertvector((c * height + b) * width + a, I));
+      // Of the padding nothing counts.
+      total += n - k >= kLanes ? here : (load(kCount) < static_cast<float>(n - k) ? here : I{});
     }
-    int sum0 = 0, sum1 = 0, sum2 = 0, sum3 = 0, i = 0;
-    for (; i + 4 <= n; i += 4) {
-      sum0 += value[voxel[i]], sum1 += value[voxel[i + 1]];
-      sum2 += value[voxel[i + 2]], sum3 += value[voxel[i + 3]];
-    }
-    for (; i < n; ++i) sum0 += value[voxel[i]];
-    sum_out[s] += sum0 + sum1 + sum2 + sum3;
+    long long sum = 0;
+    for (int i = 0; i < kLanes; ++i) sum += total[i];
+    sum_out[s] += sum;
   }
 }
 

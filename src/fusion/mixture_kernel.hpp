@@ -68,7 +68,7 @@ struct MixtureKernel {
                  float* v, float* w);
   // sum[s] += sum over i < n of the value at the voxel nearest to (u, v, w)_i + offset s, all in voxels;
   // points outside take the border's voxel. `offset` holds three numbers a shift. Arrays are padded to a
-  // multiple of 16; n is at most kMostPoints and a volume has at most 2^24 voxels.
+  // multiple of 16; n is at most kMostPoints, a volume has at most 2^24 voxels and one number after them.
   void (*nearest_sums)(const float* u, const float* v, const float* w, int n, const float* offset, int shifts,
                        const int* dim, const short* value, long long* sum);
   // The centres within reach of one localisation: their indices, in whole blocks, and their weighted

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "blocked_mixture.hpp"
 #include "fusion_data_impl.hpp"
@@ -64,6 +66,63 @@ std::vector<std::vector<float>> occupancy(const Mixture& mixture, const FusionDa
     factors[i] = std::move(factor);
   });
   return factors;
+}
+
+double likeliest_strength(const Mixture& mixture, const FusionData& data, const std::vector<Pose>& poses,
+                          double reach) {
+  // Patches: a centre joins the heaviest one before it within reach, so that counts are added once.
+  const auto centres = static_cast<std::size_t>(mixture.size());
+  const auto near = neighbours_within(mixture, reach);
+  std::vector<std::size_t> order(centres), patch(centres, centres);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return mixture.weight[static_cast<Eigen::Index>(a)] > mixture.weight[static_cast<Eigen::Index>(b)];
+  });
+  std::size_t patches = 0;
+  for (const std::size_t k : order) {
+    if (patch[k] < centres) continue;
+    for (const std::size_t l : near[k])
+      if (patch[l] == centres) patch[l] = patches;
+    ++patches;
+  }
+  std::vector<double> share(patches, 0.0);
+  for (std::size_t k = 0; k < centres; ++k)
+    share[patch[k]] += static_cast<double>(mixture.weight[static_cast<Eigen::Index>(k)]);
+  const BlockedMixture blocked(mixture);
+  const auto padded = static_cast<std::size_t>(blocked.padded_size());
+  std::vector<std::vector<double>> count(data.size(), std::vector<double>(patches, 0.0));
+  parallel_for(data.size(), [&](std::size_t i) {
+    const KernelLocalisations& view = data.impl().view[i];
+    if (view.empty()) return;
+    ViewFrame frame(blocked);
+    std::vector<float> sums(kernel::kSums * padded, 0.0f), scratch(padded), inlier(view.size()),
+        density(view.size());
+    mixture_kernel().accumulate(frame.at(poses[i].inverse(), blocked.weight()), view.data(),
+                                static_cast<int>(view.size()), blocked.background(), sums.data(), inlier.data(),
+                                density.data(), scratch.data());
+    for (std::size_t k = 0; k < centres; ++k) count[i][patch[k]] += static_cast<double>(sums[k]);
+  });
+  const auto evidence = [&](double strength) {
+    double total = 0;
+    for (const std::vector<double>& n : count) {
+      double all = 0;
+      for (std::size_t p = 0; p < patches; ++p) {
+        if (share[p] < static_cast<double>(kLeastWeight)) continue;
+        all += n[p];
+        total += std::isfinite(strength)
+                     ? std::lgamma(strength * share[p] + n[p]) - std::lgamma(strength * share[p])
+                     : n[p] * std::log(share[p]);
+      }
+      if (std::isfinite(strength)) total += std::lgamma(strength) - std::lgamma(strength + all);
+    }
+    return total;
+  };
+  double best = std::numeric_limits<double>::infinity(), most = evidence(best);
+  for (double total = 1024; total >= 4; total /= 2) {
+    const double e = evidence(total);
+    if (e > most) most = e, best = total / static_cast<double>(centres);
+  }
+  return best;
 }
 
 double shown_share(const Mixture& mixture, const std::vector<float>& factor) {

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "fusion_data_impl.hpp"
 #include "polar/core/parallel.hpp"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int kResponsibilityRounds = 2;
 constexpr int kIterations = 8;
+constexpr int kPoseParameters = 6;
 constexpr double kDifference = 1e-4;  // step of the second derivative, rad and particle radii
 
 // Residuals of all terms of one view; parameters are the step (w, v) from a reference pose.
@@ -117,6 +119,29 @@ Matrix6 inverse_information(const Matrix6& information, bool planar, bool& posit
   return out;
 }
 
+// Sum over bursts of the outer product of their gradients, and how many bursts.
+struct BurstSpread {
+  Matrix6 sum = Matrix6::Zero();
+  int bursts = 0;
+};
+BurstSpread spread_of_bursts(ViewFrame& frame, const KernelLocalisations& view, const std::vector<int>& burst,
+                             const Pose& at, float background, const float* weight) {
+  std::map<int, KernelLocalisations> members;  // in the order of their numbers
+  BurstSpread out;
+  const auto add = [&](const KernelLocalisations& some) {
+    const Vector6 g = pose_derivatives(frame, some, at, background, weight).gradient;
+    out.sum += g * g.transpose();
+    ++out.bursts;
+  };
+  for (std::size_t j = 0; j < view.size(); ++j)
+    if (burst[j] >= 0)
+      members[burst[j]].push_back(view[j]);
+    else
+      add({view[j]});
+  for (const auto& [number, some] : members) add(some);
+  return out;
+}
+
 // A step (w, v) after view_from_template, seen after template_from_view (first order).
 Matrix6 adjoint(const Pose& template_from_view) {
   Matrix6 a = Matrix6::Zero();
@@ -128,7 +153,7 @@ Matrix6 adjoint(const Pose& template_from_view) {
 }  // namespace
 
 std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
-                                 const std::vector<Pose>& poses) {
+                                 const std::vector<Pose>& poses, const std::vector<std::vector<int>>& burst) {
   const BlockedMixture blocked(mixture);
   const float background = blocked.background();
   std::vector<PolishedPose> out(data.size());
@@ -161,6 +186,15 @@ std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
       bool ignored = false;
       covariance = inverse_information(pose_derivatives(frame, view, pose, background, weight).fisher,
                                        data.planar(), ignored);
+    }
+    if (!burst.empty()) {
+      const BurstSpread spread = spread_of_bursts(frame, view, burst[i], pose, background, weight);
+      if (spread.bursts > kPoseParameters) {
+        const double share = (covariance * spread.sum).trace() / (data.planar() ? 3 : kPoseParameters);
+        result.temper = 1 / std::max(1.0, share);
+        const Matrix6 robust = covariance * spread.sum * covariance;
+        if (robust.trace() > covariance.trace()) covariance = robust;
+      }
     }
     const Matrix6 a = adjoint(result.template_from_view);
     result.covariance = a * covariance * a.transpose();

@@ -69,10 +69,11 @@ std::vector<std::string> apply_poses(const ApplyOptions& options) {
           std::to_string(unknown) + " are not in the result",
       "localisations " + std::to_string(table.size()) + " of " + std::to_string(set.table.size())};
   for (const std::string& warning : set.table.warnings) lines.push_back("warning      " + warning);
-  std::vector<std::string> written;
+  std::vector<std::string> written, notes;
   for (const std::string& format : options.formats)
-    for (const std::string& name : write_format(format, options.directory, {table, render}))
+    for (const std::string& name : write_format(format, options.directory, {table, render}, notes))
       written.push_back(name);
+  for (const std::string& note : notes) lines.push_back("warning      " + note);
   directory.remove_other_results(written);
   for (const std::string& name : written) lines.push_back(directory.file(name));
   return lines;

@@ -14,6 +14,7 @@
 #include "config/nearest.hpp"
 #include "json_text.hpp"
 #include "polar/core/parallel.hpp"
+#include "polar/report/batch_page.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 
@@ -36,7 +37,7 @@ class Batch {
   Batch(const BatchConfig& config, const BatchFlags& flags, Progress& progress, const Engine& engine)
       : config_(config), flags_(flags), progress_(progress), engine_(engine) {
     require_known_names();
-    for (const BatchDataset& d : config.datasets)
+    for (const DatasetConfig& d : config.datasets)
       rows_.push_back({d.name, d.condition, "waiting", {}, 0, {}});
   }
 
@@ -53,13 +54,14 @@ class Batch {
       listen();
       if (progress_.cancelled()) stop();
     }
+    write_page();
     return outcome();
   }
 
  private:
   void require_known_names() const {
     std::vector<std::string> names;
-    for (const BatchDataset& d : config_.datasets) names.push_back(d.name);
+    for (const DatasetConfig& d : config_.datasets) names.push_back(d.name);
     for (const std::string& name : flags_.only)
       if (std::find(names.begin(), names.end(), name) == names.end())
         throw smlm::Error(smlm::Fault::usage, "--only " + name, "no such data set",
@@ -89,7 +91,7 @@ class Batch {
 
   void find_what_is_there() {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const BatchDataset& d = config_.datasets[i];
+      const DatasetConfig& d = config_.datasets[i];
       bool complete = false;
       if (d.fault.empty()) {
         try {
@@ -126,6 +128,7 @@ class Batch {
       const int all = flags_.threads > 0 ? flags_.threads : thread_limit();
       const ThreadLimit threads(std::max(1, all / flags_.jobs));
       RunFlags flags;
+      flags.command = flags_.command;
       (flags_.overwrite ? flags.overwrite : flags.resume) = true;
       return polar::run(run_config, flags, progress, engine_).cancelled ? kStopped : 0;
     };
@@ -182,8 +185,28 @@ class Batch {
                                 pipeline::json_text(pipeline::batch_json(rows_, config_.bootstrap)));
   }
 
+  // In a process of its own, too: drawing starts threads, and this process must have none when it forks.
+  void write_page() {
+    const auto work = [this](Progress&) {
+      const ThreadLimit threads(flags_.threads > 0 ? flags_.threads : thread_limit());
+      write_batch_report(config_.directory, file(kReportFile), report_name(config_.directory));
+      return 0;
+    };
+    ChildProcess page(progress_, work);
+    while (page.receive([this](const std::string& line) { progress_.note(line); })) {
+    }
+    const ChildProcess::End end = page.end();
+    if (end.reported && end.code == 0) return;
+    page_fault_ = end.text;
+    progress_.note(std::string(kReportFile) + ": failed: " + end.text);
+  }
+
   BatchOutcome outcome() const {
     BatchOutcome o;
+    if (!page_fault_.empty()) {
+      o.some_failed = true;
+      o.summary.push_back(std::string("failed       ") + kReportFile + ": " + page_fault_);
+    }
     o.cancelled = progress_.cancelled() && (!waiting_.empty() || stopping_);
     std::size_t done = 0, kept = 0;
     for (const DatasetRow& row : rows_) {
@@ -209,6 +232,7 @@ class Batch {
   std::vector<Running> running_;
   std::size_t ended_ = 0, total_ = 0;
   bool stopping_ = false;
+  std::string page_fault_;  // why the page could not be written
 };
 }  // namespace
 

@@ -6,6 +6,7 @@
 
 #include "batch_files.hpp"
 #include "config/fields.hpp"
+#include "config/glob.hpp"
 #include "config/paths.hpp"
 #include "run_config_tree.hpp"
 #include "smlm/error.hpp"
@@ -111,9 +112,9 @@ Node run_tree(const Tree& t, const Entry& e, const std::vector<std::string>& fil
   return root;
 }
 
-BatchDataset dataset(const Tree& t, const Entry& e, std::vector<std::string> files,
+DatasetConfig dataset(const Tree& t, const Entry& e, std::vector<std::string> files,
                      const std::vector<std::string>& overrides, const std::string& path) {
-  BatchDataset d;
+  DatasetConfig d;
   d.name = e.name;
   d.condition = e.condition;
   const std::string folder = pipeline::folder_of(path);
@@ -157,9 +158,9 @@ std::vector<std::pair<Entry, std::string>> entries_of_folders(const Entry& e, co
   return found;
 }
 
-void require_distinct_names(const std::vector<BatchDataset>& datasets, const std::string& path) {
+void require_distinct_names(const std::vector<DatasetConfig>& datasets, const std::string& path) {
   std::set<std::string> seen;
-  for (const BatchDataset& d : datasets) {
+  for (const DatasetConfig& d : datasets) {
     if (!can_be_a_folder(d.name))
       throw smlm::Error(smlm::Fault::usage, path, "'" + d.name + "' cannot be the name of a data set",
                         "rename the folder, or name the data set");
@@ -206,7 +207,7 @@ BatchConfig load_batch_config(const std::string& path, const std::vector<std::st
 
 void move_batch(BatchConfig& config, const std::string& directory) {
   config.directory = directory;
-  for (BatchDataset& d : config.datasets) d.run.output.directory = directory + "/" + d.name;
+  for (DatasetConfig& d : config.datasets) d.run.output.directory = directory + "/" + d.name;
 }
 
 }  // namespace polar

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "polar/pipeline/outputs.hpp"
+
 namespace polar::pipeline {
 
 constexpr const char* kBatchSummary = "summary.csv";
@@ -10,7 +12,8 @@ constexpr const char* kBatchConditions = "conditions.csv";
 constexpr const char* kBatchState = "batch.json";
 
 inline bool is_batch_file(const std::string& name) {
-  return name == kBatchSummary || name == kBatchConditions || name == kBatchState;
+  return name == kBatchSummary || name == kBatchConditions || name == kBatchState ||
+         name == kReportFile;
 }
 
 }  // namespace polar::pipeline

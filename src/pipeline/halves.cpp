@@ -1,8 +1,11 @@
 #include "halves.hpp"
 
+#include <map>
+
 #include "polar/core/rng.hpp"
 #include "polar/registration/prepare.hpp"
 #include "polar/results/half_maps.hpp"
+#include "smlm/repetitions.hpp"
 
 namespace polar::pipeline {
 
@@ -10,14 +13,26 @@ namespace {
 constexpr std::uint32_t kSplitStage = 0x91;
 constexpr std::size_t kFewestParticles = 4;
 
-// Which half every particle belongs to.
-std::vector<bool> split(std::size_t n, std::uint64_t seed) {
+}  // namespace
+
+std::vector<bool> second_half(const smlm::ParticleSet& set, std::uint64_t seed) {
+  const std::size_t n = set.particles.size();
   const std::vector<std::uint32_t> order = random_order(n, KeyedRandom(seed, 0, kSplitStage));
   std::vector<bool> second(n);
   for (std::size_t i = 0; i < n; ++i) second[order[i]] = i % 2 == 1;
+  const smlm::Repetitions repetitions = smlm::find_repetitions(set.table);
+  if (repetitions.particles == 0) return second;
+  std::map<std::uint32_t, bool> half_of_original;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (set.particles[i].rows.empty()) continue;
+    const std::int64_t named = set.table.particle[set.particles[i].rows.front()];
+    const std::uint32_t original = repetitions.original[static_cast<std::size_t>(named)];
+    second[i] = half_of_original.emplace(original, second[i]).first->second;
+  }
   return second;
 }
 
+namespace {
 Results registered(const smlm::ParticleSet& all, const std::vector<bool>& second, bool want_second,
                    RegistrationOptions options, Progress& progress, Checkpoint& checkpoint,
                    const Engine& engine) {
@@ -52,7 +67,7 @@ ResolutionReport resolve_halves(const smlm::ParticleSet& particles, const Regist
   ResolutionReport report;
   PartOfCheckpoint data(checkpoint, "data"), noise(checkpoint, "noise");
   if (particles.particles.size() < kFewestParticles) return report;
-  const std::vector<bool> second = split(particles.particles.size(), options.seed);
+  const std::vector<bool> second = second_half(particles, options.seed);
   report.data = half_maps(particles, second, options, progress, data, engine);
   if (progress.cancelled()) return report;
   report.noise =

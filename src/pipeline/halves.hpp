@@ -1,6 +1,9 @@
 // `output.resolution: halves`: two halves of the particles, registered as if the other did not exist.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "polar/pipeline/run.hpp"
 #include "polar/results/resolution.hpp"
 #include "smlm/particle_set.hpp"
@@ -12,5 +15,9 @@ namespace polar::pipeline {
 /// particles cannot be split: the report is then empty.
 ResolutionReport resolve_halves(const smlm::ParticleSet& particles, const RegistrationOptions& options,
                                 Progress& progress, Checkpoint& checkpoint, const Engine& engine);
+
+/// Which particles are in the second half. Copies of a measurement (smlm::find_repetitions) are in the same
+/// one: two halves that share data agree on anything.
+std::vector<bool> second_half(const smlm::ParticleSet& set, std::uint64_t seed);
 
 }  // namespace polar::pipeline

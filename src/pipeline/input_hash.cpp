@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "polar/core/sha256.hpp"
 #include "smlm/error.hpp"
 #include "smlm/regular_file.hpp"
 
@@ -26,19 +27,22 @@ std::string text_of(std::uint64_t hash) {
 InputHash input_hash(const std::vector<std::string>& files, const std::string& configuration) {
   std::uint64_t hash = kOffset;
   std::vector<char> block(1 << 20);
+  InputHash named;
   for (const std::string& file : files) {
     smlm::require_regular_file(file);
     std::ifstream in(file, std::ios::binary);
     if (!in) throw smlm::Error(smlm::Fault::io, file, "cannot be opened", "check its permissions");
     std::uint64_t size = 0;
+    Sha256 own;
     while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
       mix(hash, block.data(), static_cast<std::size_t>(in.gcount()));
+      own.add(block.data(), static_cast<std::size_t>(in.gcount()));
       size += static_cast<std::uint64_t>(in.gcount());
     }
     const std::string length = ":" + std::to_string(size) + ";";  // so that files cannot run into each other
     mix(hash, length.data(), length.size());
+    named.sha256.push_back(own.digits());
   }
-  InputHash named;
   named.files = text_of(hash);
   mix(hash, configuration.data(), configuration.size());
   named.both = text_of(hash);

@@ -8,6 +8,7 @@ namespace polar::pipeline {
 struct InputHash {
   std::string files, configuration;  // each by itself
   std::string both;                  // names the computation
+  std::vector<std::string> sha256;   // of each file, so that others can tell it
 };
 
 /// FNV-1a (64 bits; G. Fowler, L. C. Noll, K.-P. Vo) over the files' content, in their order, and over

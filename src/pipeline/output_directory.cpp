@@ -22,10 +22,18 @@ constexpr const char* kLock = ".polar.lock";
   throw smlm::Error(smlm::Fault::io, path, what, remedy);
 }
 
+// What a run in which no particle has a pose leaves is its page, the record and the poses that go with it,
+// without a summary: nothing to be kept from the same command given again.
 bool holds_something(const std::string& path) {
-  for (const auto& entry : std::filesystem::directory_iterator(path))
-    if (entry.path().filename() != kLock) return true;
-  return false;
+  bool something = false, page = false;
+  for (const auto& entry : std::filesystem::directory_iterator(path)) {
+    const std::string name = entry.path().filename().string();
+    if (name == kLock) continue;
+    if (name != kReportFile && name != "results.h5" && name != "poses.csv") return true;
+    something = true;
+    page = page || name == kReportFile;
+  }
+  return something && !page;
 }
 
 std::vector<std::string> our_files() {

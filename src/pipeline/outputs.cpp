@@ -1,5 +1,7 @@
 #include "polar/pipeline/outputs.hpp"
 
+#include <filesystem>
+
 #include "polar/results/mrc.hpp"
 #include "polar/results/picasso.hpp"
 #include "polar/results/ply.hpp"
@@ -11,55 +13,86 @@
 #include "polar/results/vtkhdf.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
+#include "smlm/number_text.hpp"
 
 namespace polar {
 
 namespace {
-void vtkhdf(const std::string& folder, const ExportInput& in) {
+using Notes = std::vector<std::string>;
+
+void note_growth(const Volume& volume, const RenderOptions& options, Notes& notes) {
+  if (volume.voxel_nm <= volume.wished_voxel_nm) return;
+  notes.push_back("voxels are " + smlm::number_text(volume.voxel_nm) + " nm instead of " +
+                  smlm::number_text(volume.wished_voxel_nm) + " nm: no axis gets more than " +
+                  std::to_string(options.most_voxels_per_axis));
+}
+
+Volume drawn(const ExportInput& in, Notes& notes) {
+  Volume volume = render(in.superparticle, in.render);
+  note_growth(volume, in.render, notes);
+  return volume;
+}
+
+// One volume a channel; one without a name where there are no channels.
+std::vector<ChannelVolume> drawn_channels(const ExportInput& in, Notes& notes) {
+  std::vector<ChannelVolume> channels = render_channels(in.superparticle, in.render);
+  if (channels.empty())
+    channels.push_back({"", drawn(in, notes)});
+  else
+    note_growth(channels.front().volume, in.render, notes);
+  return channels;
+}
+
+void vtkhdf(const std::string& folder, const ExportInput& in, Notes& notes) {
   write_points_vtkhdf(folder + "aligned.hdf", in.superparticle);
-  write_volume_vtkhdf(folder + "template.hdf", render(in.superparticle, in.render),
+  write_volume_vtkhdf(folder + "template.hdf", drawn(in, notes),
                       render_channels(in.superparticle, in.render));
 }
 
-void csv(const std::string& folder, const ExportInput& in) {
+void csv(const std::string& folder, const ExportInput& in, Notes&) {
   smlm::write_file_atomically(folder + "aligned.csv", format_table_csv(in.superparticle));
 }
 
-void png(const std::string& folder, const ExportInput& in) {
-  std::vector<ChannelVolume> channels = render_channels(in.superparticle, in.render);
-  if (channels.empty()) channels.push_back({"", render(in.superparticle, in.render)});
-  write_preview_png(folder + "preview.png", channels);
+void png(const std::string& folder, const ExportInput& in, Notes& notes) {
+  write_preview_png(folder + "preview.png", drawn_channels(in, notes));
 }
 
-void tiff(const std::string& folder, const ExportInput& in) {
+void tiff(const std::string& folder, const ExportInput& in, Notes& notes) {
   std::vector<Volume> volumes;
-  for (ChannelVolume& c : render_channels(in.superparticle, in.render))
-    volumes.push_back(std::move(c.volume));
-  if (volumes.empty()) volumes.push_back(render(in.superparticle, in.render));
+  for (ChannelVolume& c : drawn_channels(in, notes)) volumes.push_back(std::move(c.volume));
   write_imagej_tiff(folder + "template.tif", volumes);
 }
 
-void ply(const std::string& folder, const ExportInput& in) {
+void ply(const std::string& folder, const ExportInput& in, Notes&) {
   write_ply(folder + "aligned.ply", in.superparticle);
 }
 
-void picasso(const std::string& folder, const ExportInput& in) {
-  write_picasso(folder + "aligned.hdf5", in.superparticle, picasso_shift_nm(in.superparticle));
+void picasso(const std::string& folder, const ExportInput& in, Notes& notes) {
+  const smlm::LocalisationTable& table = in.superparticle;
+  write_picasso(folder + "aligned.hdf5", table, picasso_shift_nm(table));
+  const std::vector<std::int32_t> groups = picasso_groups(table.particle_names);
+  std::size_t renamed = 0;
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    renamed += std::to_string(groups[i]) != table.particle_names[i];
+  if (renamed > 0) {
+    notes.push_back("Picasso's groups are whole numbers: " + std::to_string(renamed) + " of " +
+                    std::to_string(groups.size()) + " particles got one, which aligned_particles.csv lists");
+  }
 }
 
-void thunderstorm(const std::string& folder, const ExportInput& in) {
+void thunderstorm(const std::string& folder, const ExportInput& in, Notes&) {
   smlm::write_file_atomically(folder + "aligned_thunderstorm.csv", format_thunderstorm_csv(in.superparticle));
 }
 
-void mrc(const std::string& folder, const ExportInput& in) {
-  write_mrc(folder + "template.mrc", render(in.superparticle, in.render));
+void mrc(const std::string& folder, const ExportInput& in, Notes& notes) {
+  write_mrc(folder + "template.mrc", drawn(in, notes));
 }
 
-void star(const std::string& folder, const ExportInput& in) {
+void star(const std::string& folder, const ExportInput& in, Notes&) {
   smlm::write_file_atomically(folder + "poses.star", format_star(in.poses));
 }
 
-void sites(const std::string& folder, const ExportInput& in) {
+void sites(const std::string& folder, const ExportInput& in, Notes&) {
   smlm::write_file_atomically(
       folder + "sites.csv", format_sites_csv(in.sites ? *in.sites : find_sites(in.superparticle, in.render)));
 }
@@ -72,7 +105,7 @@ const std::vector<OutputFormat>& output_formats() {
       {"png", {"preview.png"}, png},
       {"tiff", {"template.tif"}, tiff},
       {"ply", {"aligned.ply"}, ply},
-      {"picasso", {"aligned.hdf5", "aligned.yaml"}, picasso},
+      {"picasso", {"aligned.hdf5", "aligned.yaml", "aligned_particles.csv"}, picasso},
       {"thunderstorm", {"aligned_thunderstorm.csv"}, thunderstorm},
       {"mrc", {"template.mrc"}, mrc},
       {"star", {"poses.star"}, star, true},
@@ -98,8 +131,15 @@ const std::vector<std::string>& half_map_files() {
   return names;
 }
 
+std::string report_name(const std::string& directory) {
+  std::error_code unseen;  // a folder that cannot be seen has no better name than the one given
+  const std::filesystem::path whole = std::filesystem::absolute(directory, unseen).lexically_normal();
+  const std::filesystem::path last = whole.has_filename() ? whole.filename() : whole.parent_path().filename();
+  return last.empty() ? directory : last.string();
+}
+
 std::vector<std::string> result_files() {
-  std::vector<std::string> names = {"poses.csv", "results.h5", "summary.json"};
+  std::vector<std::string> names = {"poses.csv", "results.h5", "summary.json", kReportFile};
   names.insert(names.end(), half_map_files().begin(), half_map_files().end());
   for (const OutputFormat& format : output_formats())
     names.insert(names.end(), format.files.begin(), format.files.end());
@@ -107,10 +147,10 @@ std::vector<std::string> result_files() {
 }
 
 std::vector<std::string> write_format(const std::string& format, const std::string& directory,
-                                      const ExportInput& input) {
+                                      const ExportInput& input, std::vector<std::string>& notes) {
   for (const OutputFormat& known : output_formats()) {
     if (known.name != format) continue;
-    known.write(directory + "/", input);
+    known.write(directory + "/", input, notes);
     return known.files;
   }
   throw smlm::Error(smlm::Fault::usage, "format", "'" + format + "' is not known",

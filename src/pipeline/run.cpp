@@ -16,12 +16,14 @@
 #include "input_hash.hpp"
 #include "json_text.hpp"
 #include "labelling_text.hpp"
+#include "machine.hpp"
 #include "output_directory.hpp"
 #include "polar/core/median.hpp"
 #include "polar/model/shipped_weights.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "polar/pipeline/version.hpp"
 #include "polar/registration/prepare.hpp"
+#include "polar/report/page.hpp"
 #include "polar/results/labelling.hpp"
 #include "polar/results/mrc.hpp"
 #include "polar/results/result_file.hpp"
@@ -95,12 +97,7 @@ smlm::ParticleSet read_particles(const RunConfig& config, Progress& progress) {
   for (const smlm::Rejection& r : set.table.rejected)
     progress.note("warning: " + std::to_string(r.rows) + " rows left out: " + r.reason + " (first: row " +
                   std::to_string(r.first_row) + ")");
-  if (set.particles.size() < 2)
-    throw smlm::Error(
-        smlm::Fault::input, config.files.front(),
-        std::to_string(set.particles.size()) + " particle" + (set.particles.size() == 1 ? "" : "s"),
-        "at least two are needed; which column names the particle (input.columns.particle, or "
-        "input.particles: one_per_file)?");
+  if (const auto obstacle = smlm::obstacle_to_registration(set.table)) throw *obstacle;
   return set;
 }
 
@@ -131,7 +128,7 @@ std::string format(const char* pattern, double value) {
 
 std::string agreement_text(double agreement) {
   if (!(agreement > 0)) return "";
-  return format(", two random ones pose %.0f %% of the particles alike", 100 * agreement);
+  return format(", the best two pose %.0f %% of the particles alike", 100 * agreement);
 }
 
 // NaN has no place in JSON.
@@ -196,7 +193,8 @@ std::vector<std::string> describe(const Results& r, const std::vector<Stranger>&
                                   const std::string& directory, double seconds) {
   const Registration& g = r.registration;
   const std::size_t n = r.particles.particles.size();
-  std::vector<std::string> lines = {"particles    " + std::to_string(accepted_particles(r)) + " of " +
+  std::vector<std::string> lines = {"structure    " + to_string(g.verdict) + ": " + g.verdict_reason,
+                                    "particles    " + std::to_string(accepted_particles(r)) + " of " +
                                     std::to_string(n) + " accepted"};
   for (const auto& [count, reason] : rejections(r))
     lines.push_back("rejected     " + std::to_string(count) + ": " + reason);
@@ -210,6 +208,10 @@ std::vector<std::string> describe(const Results& r, const std::vector<Stranger>&
   lines.push_back("rounds       " + std::to_string(g.rounds) +
                   (g.converged ? ", converged: " : ", not converged: ") + g.stopped_because);
   if (g.symmetry) lines.push_back(pipeline::symmetry_line(*g.symmetry, r.normalisation.scale_nm));
+  if (g.other)
+    lines.push_back("other        the average " + (g.other->group == "C1" ? "without symmetry" : "with " + g.other->group) +
+                    format(" explains localisations kept apart by %+.4f", g.other->gain) +
+                    format(" +- %.4f nat", g.other->gain_std));
   if (r.resolution) lines.push_back(resolution_line(*r.resolution));
   lines.push_back("seconds      " + format("%.1f", seconds));
   lines.push_back("results      " + directory);
@@ -225,7 +227,8 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
   for (const StartReport& s : g.starts)
     starts.push_back({{"name", s.name},
                       {"held_out_log_likelihood", s.held_out_log_likelihood},
-                      {"final_held_out_log_likelihood", s.final_held_out_log_likelihood},
+                      {"gain", s.gain},
+                      {"gain_std", s.gain_std},
                       {"won", s.won}});
   const Precision precision = median_precision(r);
   nlohmann::json summary = {{"program", r.provenance.program},
@@ -236,6 +239,10 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
                             {"localisations", r.particles.table.size()},
                             {"planar", r.planar},
                             {"rounds", g.rounds},
+                            {"verdict", to_string(g.verdict)},
+                            {"verdict_reason", g.verdict_reason},
+                            {"structure_gain", g.structure_gain},
+                            {"structure_gain_std", g.structure_gain_std},
                             {"converged", g.converged},
                             {"stopped_because", g.stopped_because},
                             {"starts", starts},
@@ -251,6 +258,9 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
                             {"text", lines}};
   for (const Stranger& s : unlike)
     summary["unlike_the_others"].push_back({{"particle", s.particle}, {"deviation", s.deviation}});
+  if (g.other)
+    summary["other_average"] = {
+        {"group", g.other->group}, {"held_out_gain", g.other->gain}, {"held_out_gain_std", g.other->gain_std}};
   if (g.symmetry) summary["symmetry"] = pipeline::symmetry_json(*g.symmetry, r.normalisation.scale_nm);
   if (!g.weights_sha256.empty()) summary["weights_sha256"] = g.weights_sha256;
   if (r.resolution)
@@ -310,24 +320,42 @@ Products products_of(const Results& r, const RunConfig& config) {
   return p;
 }
 
-std::vector<std::string> write(const Results& r, const Products& p, const RunConfig& config,
-                               const pipeline::OutputDirectory& directory) {
+// Poses, record and page: also of a run in which no particle has a pose.
+std::vector<std::string> write_account(const Results& r, const RunConfig& config,
+                                       const pipeline::OutputDirectory& directory,
+                                       const smlm::LocalisationTable& aligned) {
   // Without its summary the directory is not complete: it goes first and comes back last.
   std::filesystem::remove(directory.file(kSummary));
-  const ExportInput input{p.superparticle, p.render, pose_rows(r), &p.sites};
   std::vector<std::string> written = {"poses.csv"};
-  smlm::write_file_atomically(directory.file("poses.csv"), format_pose_table(input.poses));
+  smlm::write_file_atomically(directory.file("poses.csv"), format_pose_table(pose_rows(r)));
+  const std::vector<std::string>& formats = config.output.formats;
+  const bool record = std::find(formats.begin(), formats.end(), "hdf5") != formats.end();
+  const std::string path = directory.file("results.h5");
+  if (record || config.output.report) write_result_file(path, r, aligned);
+  if (config.output.report) {
+    write_report(path, directory.file(kReportFile), report_name(config.output.directory));
+    written.emplace_back(kReportFile);
+  }
+  if (record)
+    written.emplace_back("results.h5");
+  else
+    std::filesystem::remove(path);  // the page alone was wanted
+  return written;
+}
+
+std::vector<std::string> write(const Results& r, const Products& p, const RunConfig& config,
+                               const pipeline::OutputDirectory& directory, Progress& progress) {
+  const ExportInput input{p.superparticle, p.render, pose_rows(r), &p.sites};
+  std::vector<std::string> written = write_account(r, config, directory, p.superparticle);
   std::vector<std::string> formats = config.output.formats;
   if (config.output.preview && std::find(formats.begin(), formats.end(), "png") == formats.end())
     formats.emplace_back("png");
   for (const std::string& format : formats) {
-    if (format == "hdf5") {
-      write_result_file(directory.file("results.h5"), r, p.superparticle);
-      written.emplace_back("results.h5");
-      continue;
-    }
-    for (const std::string& name : write_format(format, config.output.directory, input))
+    if (format == "hdf5") continue;  // above
+    std::vector<std::string> notes;
+    for (const std::string& name : write_format(format, config.output.directory, input, notes))
       written.push_back(name);
+    for (const std::string& note : notes) progress.note("warning: " + note);
     if (format == "mrc" && r.resolution && !r.resolution->data.first_density.density.empty()) {
       write_mrc(directory.file(half_map_files()[0]), r.resolution->data.first_density);
       write_mrc(directory.file(half_map_files()[1]), r.resolution->data.second_density);
@@ -362,16 +390,25 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   } else if (!checkpoint.resume(progress)) {
     refuse_other_result(directory);
   }
-  const Results r = compute(config, hash.both, progress, checkpoint, engine);
+  Results r = compute(config, hash.both, progress, checkpoint, engine);
+  r.provenance.command = flags.command;
+  r.provenance.machine = pipeline::machine_text();
+  r.provenance.input_file = input_files(config);
+  r.provenance.input_sha256 = hash.sha256;
   if (progress.cancelled()) return {true, checkpoint.flush(), {}};
   for (const std::string& warning : r.registration.warnings) progress.note("warning: " + warning);
   if (accepted_particles(r) == 0) {
+    if (config.output.report) {
+      directory.remove_other_results(write_account(r, config, directory, superparticle(r)));
+      checkpoint.remove();
+      progress.note(directory.file(kReportFile) + " shows the particles");
+    }
     const auto reasons = rejections(r);
     throw smlm::Error(smlm::Fault::numerical, config.files.front(), "no particle could be registered",
                       reasons.empty() ? "" : "most were rejected because: " + reasons.front().second);
   }
   const Products products = products_of(r, config);
-  const std::vector<std::string> written = write(r, products, config, directory);
+  const std::vector<std::string> written = write(r, products, config, directory, progress);
   const double seconds = watch.seconds();
   const std::vector<Stranger> unlike = strangers(pose_rows(r));
   std::vector<std::string> lines = describe(r, unlike, config.output.directory, seconds);

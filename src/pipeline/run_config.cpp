@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine_fields.hpp"
 #include "config/fields.hpp"
 #include "config/paths.hpp"
 #include "polar/pipeline/outputs.hpp"
@@ -26,6 +27,7 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("pixel_size_nm", o.pixel_size_nm);
     s.field("unit", o.unit);
     s.field("sigma_kind", o.sigma_kind);
+    s.field("planar", o.planar);
     s.field("lpz_unit", o.lpz_unit);
     s.field("particles", o.particles);
     s.section("pick", [&](auto& pick) {
@@ -60,6 +62,8 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("search", o.search);
     s.field("optimizer", o.optimizer);
     s.field("symmetry", o.symmetry);
+    s.field("tilt_deg", o.tilt_deg);
+    s.field("flip", o.flip);
     s.field("weights", o.weights);
     s.field("initial_poses", c.initial_poses);
     s.section("latent", [&](auto& latent) {
@@ -78,6 +82,7 @@ void fields(Visitor& v, RunConfig& c) {
       latent.field("escape_deg", o.latent.escape_deg);
     });
   });
+  v.section("expert", [&](auto& s) { pipeline::engine_fields(s, c.registration.engine); });
   v.section("output", [&](auto& s) {
     s.field("directory", c.output.directory);
     s.field("formats", c.output.formats);
@@ -85,6 +90,7 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("preview", c.output.preview);
     s.field("frame", c.output.frame);
     s.field("labels_per_site", c.output.labels_per_site);
+    s.field("report", c.output.report);
     s.field("resolution", c.output.resolution);
   });
 }
@@ -142,7 +148,7 @@ RunConfig pipeline::run_config_of(const Node& root, const std::string& where, co
     config.registration.weights = pipeline::resolve_path(config.registration.weights, folder);
   if (!config.initial_poses.empty())
     config.initial_poses = pipeline::resolve_path(config.initial_poses, folder);
-  config.files = pipeline::expand_files(config.files, folder);
+  config.files = pipeline::expand_files(config.files, folder, &config.patterns);
   config.output.directory = pipeline::resolve_path(config.output.directory, folder);
   return config;
 }

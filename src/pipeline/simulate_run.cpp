@@ -113,6 +113,7 @@ std::vector<std::string> run_simulation(const SimulateConfig& config, bool overw
                                         " (" + truth.symmetry + "), " + std::to_string(s.table.size()) +
                                         " localisations",
                                     "written to " + config.directory};
+  for (const std::string& warning : structure.warnings) lines.push_back("warning: " + warning);
   if (std::isfinite(truth.cramer_rao_pair_median_deg))
     lines.push_back("Cramer-Rao bound, median over pairs: " +
                     std::to_string(truth.cramer_rao_pair_median_deg) + " degrees");

@@ -10,9 +10,10 @@ nlohmann::json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z
 }  // namespace
 
 std::string symmetry_line(const Symmetry& s, double scale_nm) {
-  std::string line = "symmetry     " + s.group + (s.imposed ? " imposed" : " detected");
+  std::string line = "symmetry     " + s.group + (s.asked ? " as asked" : " found") +
+                     (s.in_use || s.group == "C1" ? "" : ", the average is without it");
   if (s.group == "C1") return line;
-  char text[160];
+  char text[200];
   const Eigen::Vector3d axis = s.axis(), centre = scale_nm * s.centre();
   std::snprintf(text, sizeof text,
                 " (held-out %+.4f +- %.4f), axis (%.3f %.3f %.3f) through (%.1f %.1f %.1f) nm", s.gain,
@@ -39,7 +40,8 @@ nlohmann::json symmetry_json(const Symmetry& s, double scale_nm) {
     rotation.push_back(vector_json(s.canonical_from_template.rotation.row(r)));
   for (Eigen::Index k = 0; k < s.unit.cols(); ++k) unit.push_back(vector_json(scale_nm * s.unit.col(k)));
   return {{"group", s.group},
-          {"imposed", s.imposed},
+          {"imposed", s.in_use},
+          {"asked", s.asked},
           {"axis", vector_json(s.axis())},
           {"centre_nm", vector_json(scale_nm * s.centre())},
           {"canonical_from_template", rotation},

@@ -1,27 +1,29 @@
+// One loop: coarse hypotheses compete, the symmetry of the best is tried, the exact template is refined, its
+// symmetry tested against doing without, and what came of it is reported.
 #include "polar/registration/register.hpp"
 
 #include <algorithm>
 #include <chrono>
-#include <set>
+#include <cmath>
 
-#include "finish.hpp"
-#include "latent_method.hpp"
+#include "data/template_tools.hpp"
+#include "polar/core/constants.hpp"
 #include "polar/core/symmetry_group.hpp"
-#include "polar_start.hpp"
-#include "self_similarity.hpp"
+#include "proposals/compete.hpp"
+#include "proposals/latent_method.hpp"
+#include "proposals/polar_start.hpp"
+#include "report/report.hpp"
+#include "report/verdict.hpp"
 #include "smlm/error.hpp"
-#include "starts.hpp"
 #include "states.hpp"
-#include "structureless.hpp"
-#include "symmetry_stage.hpp"
-#include "symmetry_units.hpp"
+#include "symmetry/relaxation.hpp"
+#include "symmetry/symmetry_trials.hpp"
+#include "symmetry/symmetry_units.hpp"
 
 namespace polar {
 
 namespace {
 
-constexpr double kFewLocalisations = 12000;  // of all views: less, and the last search is done again
-constexpr int kMostLastSearches = 3;
 constexpr double kLargestFactor = 1.5;  // of a, either way, before a warning
 
 class Stopwatch {
@@ -38,9 +40,8 @@ class Stopwatch {
 };
 
 void warn_about_calibration(const Calibration& c, std::vector<std::string>& warnings) {
-  const auto far = [](double a) { return a > kLargestFactor || a < 1 / kLargestFactor; };
   const auto warn = [&](const char* axis, double a) {
-    if (far(a))
+    if (a > kLargestFactor || a < 1 / kLargestFactor)
       warnings.push_back(std::string("the ") + axis +
                          " uncertainties of the table do not describe its noise: the data want them times " +
                          std::to_string(a).substr(0, 4) + "; the calibrated ones were used");
@@ -49,160 +50,183 @@ void warn_about_calibration(const Calibration& c, std::vector<std::string>& warn
   if (c.axial_factor != c.lateral_factor) warn("axial", c.axial_factor);
 }
 
-// Everything a run carries from stage to stage.
-struct Run {
-  Run(const Views& views, const RegistrationOptions& options, Progress& p, Checkpoint& c)
-      : problems(make_problems(views, options.seed)), progress(p), checkpoint(c) {
-    out.view.resize(views.view.size());
-    if (options.search == "exhaustive") {
-      rounds.rotations = kExhaustiveRotations;
-      rounds.planar_rotations = kExhaustivePlanarRotations;
-    }
-    grid = search_grid(views.planar ? rounds.planar_rotations : rounds.rotations, views.planar);
-    timed("grid");
-  }
-  void timed(const char* stage) { out.timings.push_back({stage, watch.lap()}); }
-
-  Problems problems;
-  Progress& progress;
-  Checkpoint& checkpoint;
-  Stopwatch watch;
-  RoundOptions rounds;
-  SearchGrid grid;
-  Registration out;
-};
-
-bool imposes(const RegistrationOptions& options) {
-  return options.symmetry != "none" && options.symmetry != "detect";
-}
-
-Registration cancelled(Run& run) {
-  run.out.stopped_because = "cancelled";
-  return std::move(run.out);
-}
-
-// Calibration and everything else that is decided before the polish. False: cancelled.
-bool fuse(Run& run, const RegistrationOptions& options, FusedState& fused) {
-  auto& [state, noise] = fused;
-  const Problem& problem = run.problems.of(state.crowded);
-  noise.planar = problem.planar();
-  noise.width = state.width;
-  noise = calibrate_and_fuse(problem, 3, noise, state);
-  run.timed("calibration");
-  if (run.progress.cancelled()) return false;
-  CalibrationReport chosen = choose_centres(problem, noise, state);
-  noise = chosen.noise;
-  run.timed("centres");
-  if (run.progress.cancelled()) return false;
-  if (imposes(options)) {
-    run.out.symmetry = impose_symmetry(problem, noise, options.symmetry, state);
-    noise = calibrate_and_fuse(problem, 1, noise, state);
-    chosen = choose_centres(problem, noise, state);
-    noise = chosen.noise;
-    run.timed("symmetry");
-  }
-  state.structureless = explains_no_more_than_a_cloud(problem, chosen.log_likelihood);
-  // A few localisations fit noise at first, and each view that is set right sharpens the template.
-  const int searches = std::clamp(static_cast<int>(kFewLocalisations / std::max(1.0, problem.localisations)),
-                                  1, kMostLastSearches);
-  for (int k = 0; k < searches && (k == 0 || state.escaped > 0); ++k, ++state.rounds) {
-    const std::vector<Pose> before = state.pose;
-    std::vector<std::size_t> escaped =
-        search_all(problem, run.grid, run.rounds, noise, problem.shuffled, state);
-    for (const std::size_t i : search_misfits(problem, run.grid, run.rounds, noise, state))
-      if (std::find(escaped.begin(), escaped.end(), i) == escaped.end()) escaped.push_back(i);
-    state.escaped = static_cast<int>(escaped.size());
-    state.twins = twins(state.mixture, problem.planar(), before, state.pose, escaped);
-    noise = calibrate_and_fuse(problem, 1, noise, state);
-  }
-  if (state.sites) noise = choose_centres(problem, noise, state).noise;
-  run.timed("last search");
-  return true;
-}
-
-// From a registered template to the result.
-Registration from_state(Run& run, const RegistrationOptions& options, RoundState registered) {
-  // What is found about an imposed group is no part of the state: those runs fuse again.
-  const bool kept = !imposes(options);
-  FusedState fused;
-  if (!kept || !restore(run.checkpoint, "fused", fused)) {
-    fused.state = std::move(registered);
-    if (!fuse(run, options, fused)) return cancelled(run);
-    if (kept) keep(run.checkpoint, "fused", fused);
-  }
-  if (run.progress.cancelled()) return cancelled(run);
-  auto& [state, noise] = fused;
-  const Problem& problem = run.problems.of(state.crowded);
-  if (options.symmetry == "detect") {
-    run.out.symmetry = detect_symmetry(problem, noise, state);
-    run.timed("symmetry");
-  }
-  polish_all(problem, noise, state, run.out);
-  run.timed("polish");
-  Registration& out = run.out;
-  out.rounds = state.rounds;
-  out.converged = state.escaped - state.twins <= run.rounds.settled * static_cast<double>(problem.size());
-  out.stopped_because = std::to_string(state.escaped) + " of " + std::to_string(problem.size()) +
-                        " views moved by more than 15 degrees in the last search";
-  if (state.twins > 0)
-    out.stopped_because +=
-        ", " + std::to_string(state.twins) + " of them to where the template looks the same";
-  warn_about_calibration(out.calibration, out.warnings);
-  if (out.symmetry) {
-    count_units(problem, out);
-    const std::string warning = symmetry_warning(*out.symmetry);
-    if (!warning.empty()) out.warnings.push_back(warning);
-  }
-  return std::move(out);
-}
-
-void check_symmetry(const RegistrationOptions& options, std::vector<std::string>& faults) {
-  if (options.symmetry == "none") return;
-  if (options.symmetry != "detect" &&
-      (!is_symmetry_group(options.symmetry) || options.symmetry == "C1" || options.symmetry == "D1"))
-    faults.push_back("registration.symmetry: '" + options.symmetry +
-                     "' is none of none, detect, C<n> or D<n> (n from 2 to 360), T, O, I");
-  if (options.method == "latent")
-    faults.push_back("registration.symmetry: '" + options.symmetry +
-                     "' needs registration.method: likelihood");
+bool names_a_group(const std::string& symmetry) {
+  return symmetry != "auto" && symmetry != "none" && symmetry != "detect";
 }
 
 // Only the table tells whether the data are planar.
 void check_planar(const Views& views, const RegistrationOptions& options) {
-  if (views.planar && imposes(options) && options.symmetry[0] != 'C')
+  if (!views.planar) return;
+  if (names_a_group(options.symmetry) && options.symmetry[0] != 'C')
     throw smlm::Error(smlm::Fault::usage, "registration.symmetry",
-                      "'" + options.symmetry + "' is not a group of planar data", "use none, detect or C<n>");
+                      "'" + options.symmetry + "' is not a group of planar data", "use auto, none, detect or C<n>");
 }
+
+std::vector<Pose> poses_of(const std::vector<SoftPose>& soft) {
+  std::vector<Pose> out;
+  for (const SoftPose& p : soft) out.push_back({p.rotation.cast<double>(), p.translation.cast<double>()});
+  return out;
+}
+
+class Run {
+ public:
+  Run(const Views& views, const RegistrationOptions& options, Progress& progress, Checkpoint& checkpoint)
+      : options_(options), problems_(make_problems(views, options.engine.evidence, options.seed)),
+        progress_(progress), checkpoint_(checkpoint) {
+    out_.view.resize(views.view.size());
+    timed("views");
+  }
+
+  Registration from_nothing() {
+    CoarseState coarse;
+    if (!restore(checkpoint_, "coarse", coarse)) {
+      if (!find(coarse)) return cancelled();
+      keep(checkpoint_, "coarse", coarse);
+    }
+    return finish(std::move(coarse));
+  }
+
+  Registration from_poses(const std::vector<Pose>& pose) {
+    CoarseState coarse;
+    coarse.pose = pose;
+    if (names_a_group(options_.symmetry)) coarse.group = options_.symmetry;
+    return finish(std::move(coarse));
+  }
+
+ private:
+  void timed(const char* stage) { out_.timings.push_back({stage, watch_.lap()}); }
+  Registration cancelled() {
+    out_.stopped_because = "cancelled";
+    out_.verdict_reason = "cancelled";
+    return std::move(out_);
+  }
+
+  // Coarse poses of all views and the group they are under.
+  bool find(CoarseState& coarse) {
+    const LatentModel model = latent_model(options_);
+    Competition found = compete(problems_, model.autoencoder.get(), options_, progress_);
+    timed("starts");
+    if (!found.finished) return false;
+    coarse.crowded = found.crowded;
+    coarse.starts = std::move(found.report);
+    coarse.agreement = found.agreement;
+    coarse.weights_sha256 = model.weights_sha256;
+    const Problem& problem = problems_.of(coarse.crowded);
+    SoftState state = std::move(found.winner);
+    if (options_.symmetry != "none") {
+      const std::string asked = names_a_group(options_.symmetry) ? options_.symmetry : "";
+      SymmetryChoice choice = choose_symmetry(problem, options_, state, asked, progress_);
+      if (progress_.cancelled()) return false;
+      coarse.symmetry = std::move(choice.report);
+      coarse.continuous = choice.continuous;
+      if (options_.symmetry != "detect") {
+        coarse.group = choice.group;
+        state = std::move(choice.state);
+      }
+      timed("symmetry");
+    }
+    const AnnealOptions& a = options_.engine.anneal;
+    const SoftAnnealer all(problem, problem.all, a,
+                           {options_.tilt_deg * kRadiansPerDegree, options_.flip});
+    all.continue_under({a.last_sweeps, a.last_width, a.last_width, a.last_beta, a.last_beta, 1, false}, 4000,
+                       state);
+    coarse.pose = poses_of(state.best);
+    timed("all views");
+    return !progress_.cancelled();
+  }
+
+  Registration finish(CoarseState coarse) {
+    const Problem& problem = problems_.of(coarse.crowded);
+    RefineOptions refine = options_.engine.refine;
+    if (options_.search == "exhaustive") {
+      refine.rotations = kExhaustiveRotations;
+      refine.planar_rotations = kExhaustivePlanarRotations;
+    }
+    const RotationGroup group = rotations_of(coarse.group);
+    const SearchGrid grid =
+        search_grid(problem.planar() ? refine.planar_rotations : refine.rotations, problem.planar(), group);
+    const Refiner refiner(problem, grid, refine);
+    FineState fine;
+    if (!restore(checkpoint_, "fine", fine)) {
+      fine.fit = refiner.begin(std::move(coarse.pose), NoiseModel{}, group);
+      fine.fit = refiner.rounds(std::move(fine.fit), progress_);
+      timed("rounds");
+      if (progress_.cancelled()) return cancelled();
+      fine.fit = refiner.calibrated(std::move(fine.fit));
+      timed("calibration");
+      fine.fit = refiner.discrete(std::move(fine.fit));
+      timed("centres");
+      refiner.search(fine.fit);
+      refiner.sweep(fine.fit, refine.sweeps);
+      fine.fit.evidence = refiner.judge(fine.fit);
+      timed("last search");
+      if (progress_.cancelled()) return cancelled();
+      keep(checkpoint_, "fine", fine);
+    }
+    Fit fit = std::move(fine.fit);
+    out_.symmetry = coarse.symmetry;
+    if (!group.empty()) fit = tested(problem, refiner, coarse.group, std::move(fit));
+    timed("symmetry tested");
+    report_views(problem, options_.engine, fit, out_);
+    timed("polish");
+    judge_registration(problem, fit.evidence, options_.engine.verdict, out_);
+    conclude(problem, coarse, fit);
+    return std::move(out_);
+  }
+
+  // With the group against without; evidence decides which is the result.
+  Fit tested(const Problem& problem, const Refiner& refiner, const std::string& name, Fit symmetric) {
+    Fit plain = relaxed(problem, refiner, options_.engine, symmetric);
+    const Comparison c = compare(symmetric.evidence, plain.evidence);
+    const bool without = c.better_by(options_.engine.evidence.standard_errors) && !names_a_group(options_.symmetry);
+    if (out_.symmetry) out_.symmetry->in_use = !without;
+    const double sign = without ? -1 : 1;
+    out_.other = OtherTemplate{without ? name : "C1", fused_template(without ? symmetric : plain), sign * c.gain,
+                               c.standard_error};
+    return without ? std::move(plain) : std::move(symmetric);
+  }
+
+  void conclude(const Problem& problem, const CoarseState& coarse, const Fit& fit) {
+    out_.starts = coarse.starts;
+    out_.agreement = coarse.agreement;
+    out_.weights_sha256 = coarse.weights_sha256;
+    out_.rounds = fit.rounds;
+    out_.converged = fit.escaped <= options_.engine.refine.settled * static_cast<double>(problem.size());
+    out_.stopped_because = std::to_string(fit.escaped) + " of " + std::to_string(problem.size()) +
+                           " views moved by more than 15 degrees in the last search";
+    warn_about_calibration(out_.calibration, out_.warnings);
+    if (!out_.symmetry) return;
+    warn_about_symmetry(*out_.symmetry);
+    if (rotations_of(out_.symmetry->group).size() > 1 && out_.symmetry->in_use) count_units(problem, out_);
+    if (coarse.continuous) out_.symmetry->group = out_.symmetry->group.substr(0, 1) + "inf";
+  }
+
+  // Where a group was asked for: which one explains localisations kept apart better.
+  void warn_about_symmetry(const Symmetry& s) {
+    if (!s.asked) return;
+    const SymmetryTrial* best = nullptr;
+    for (const SymmetryTrial& t : s.tried)
+      if (best == nullptr || t.gain > best->gain) best = &t;
+    const auto text = [](double v) { return std::to_string(v).substr(0, 6); };
+    if (best != nullptr && best->gain > std::max(0.0, s.gain) && best->group != s.group &&
+        best->gain - s.gain > std::hypot(best->gain_std, s.gain_std))
+      out_.warnings.push_back("registration.symmetry: " + s.group + " explains localisations kept apart worse than " +
+                              best->group + " does, by " + text(best->gain - s.gain) + " nat each");
+    if (s.gain < -s.gain_std)
+      out_.warnings.push_back("registration.symmetry: " + s.group +
+                              " explains localisations kept apart worse than no symmetry does, by " +
+                              text(-s.gain) + " +- " + text(s.gain_std) + " nat each");
+  }
+
+  const RegistrationOptions& options_;
+  Problems problems_;
+  Progress& progress_;
+  Checkpoint& checkpoint_;
+  Stopwatch watch_;
+  Registration out_;
+};
 
 }  // namespace
-
-std::vector<std::string> violations(const RegistrationOptions& options) {
-  std::vector<std::string> faults;
-  if (options.starts.empty())
-    faults.push_back("registration.starts: at least one of polar, random, imaged, assembled is needed");
-  for (const std::string& s : options.starts)
-    if (s != "polar" && s != "random" && s != "imaged" && s != "assembled")
-      faults.push_back("registration.starts: '" + s + "' is none of polar, random, imaged, assembled");
-  if (std::set<std::string>(options.starts.begin(), options.starts.end()).size() != options.starts.size())
-    faults.push_back("registration.starts: a start is named twice");
-  if (options.search != "fast" && options.search != "exhaustive")
-    faults.push_back("registration.search: '" + options.search + "' is neither fast nor exhaustive");
-  if (options.method != "likelihood" && options.method != "latent")
-    faults.push_back("registration.method is '" + options.method + "', neither likelihood nor latent");
-  LatentOptions latent = options.latent;
-  latent.optimizer = options.optimizer;
-  for (const std::string& v : violations(latent)) faults.push_back("registration." + v);
-  check_symmetry(options, faults);
-  return faults;
-}
-
-bool wants(const RegistrationOptions& options, const std::string& start) {
-  return std::find(options.starts.begin(), options.starts.end(), start) != options.starts.end();
-}
-
-bool needs_weights(const RegistrationOptions& options) {
-  return options.method == "latent" || wants(options, "polar");
-}
 
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress) {
   Checkpoint nothing;
@@ -212,43 +236,23 @@ Registration register_views(const Views& views, const RegistrationOptions& optio
 Registration register_views(const Views& views, const RegistrationOptions& options, Progress& progress,
                             Checkpoint& checkpoint) {
   check_planar(views, options);
-  LatentModel model = latent_model(options);
   if (options.method == "latent") {
+    const LatentModel model = latent_model(options);
     Stopwatch watch;
-    Registration out =
-        latent_method(make_problems(views, options.seed).plain, *model.autoencoder, options, progress);
-    out.weights_sha256 = std::move(model.weights_sha256);
+    const Problems problems = make_problems(views, options.engine.evidence, options.seed);
+    Registration out = latent_method(problems.plain, *model.autoencoder, options, progress);
+    out.weights_sha256 = model.weights_sha256;
     out.timings.push_back({"latent", watch.lap()});
     return out;
   }
-  Run run(views, options, progress, checkpoint);
-  StartsOutcome starts;
-  if (!restore(checkpoint, "winner", starts)) {
-    starts =
-        compete(run.problems, model.autoencoder.get(), options, run.grid, run.rounds, progress, checkpoint);
-    run.timed("starts");
-    if (!starts.finished) return cancelled(run);
-    checkpoint.drop("start "), checkpoint.drop("finalist ");
-    keep(checkpoint, "winner", starts);
-  }
-  run.out.starts = starts.report;
-  run.out.agreement = starts.agreement;
-  run.out.weights_sha256 = std::move(model.weights_sha256);
-  return from_state(run, options, std::move(starts.winner));
+  return Run(views, options, progress, checkpoint).from_nothing();
 }
 
 Registration register_from(const Views& views, const std::vector<Pose>& template_from_view,
                            const RegistrationOptions& options, Progress& progress) {
   check_planar(views, options);
   Checkpoint nothing;
-  Run run(views, options, progress, nothing);
-  RoundState state;
-  state.pose = template_from_view;
-  fuse_anew(run.problems.thinned, run.rounds, run.problems.thinned.all, state);
-  if (!run_rounds(run.problems.thinned, run.grid, run.rounds, progress, nothing, state))
-    return cancelled(run);
-  run.timed("rounds");
-  return from_state(run, options, std::move(state));
+  return Run(views, options, progress, nothing).from_poses(template_from_view);
 }
 
 }  // namespace polar

@@ -2,26 +2,32 @@
 // member that is added to a struct and not to its list does not compile.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "ab_initio.hpp"
 #include "byte_archive.hpp"
 #include "polar/registration/checkpoint.hpp"
-#include "starts.hpp"
+#include "polar/registration/registration.hpp"
+#include "refine/refine.hpp"
 
 namespace polar {
 
-/// What a registration is before its poses are polished.
-struct FusedState {
-  RoundState state;
-  NoiseModel noise;
+/// What is known when coarse poses of all views are found.
+struct CoarseState {
+  std::vector<Pose> pose;  // template_from_view
+  bool crowded = false;    // of which problem they are
+  std::string group = "C1";
+  bool continuous = false;
+  std::optional<Symmetry> symmetry;
+  std::vector<StartReport> starts;
+  double agreement = 0;
+  std::string weights_sha256;
 };
 
-/// What run_rounds is between two rounds.
-struct RoundsUnderWay {
-  int round = 0;
-  bool searching = true;
-  RoundState state, best;
+/// And when the exact template is.
+struct FineState {
+  Fit fit;
 };
 
 namespace states {
@@ -42,36 +48,37 @@ void fields(Archive& archive, NoiseModel& value) {
   archive(lateral_factor, axial_factor, lateral_extra, axial_extra, width, planar);
 }
 template <class Archive>
-void fields(Archive& archive, Hypothesis& value) {
-  auto& [name, number, crowded, one_view, mixture, pose, held_out] = value;
-  archive(name, number, crowded, one_view, mixture, pose, held_out);
+void fields(Archive& archive, SymmetryTrial& value) {
+  auto& [group, similarity, gain, gain_std] = value;
+  archive(group, similarity, gain, gain_std);
 }
 template <class Archive>
-void fields(Archive& archive, RoundState& value) {
-  auto& [mixture, pose, margin, crowded, one_view, occupancy, group, sites, width, held_out, rounds, escaped,
-         twins, cut, far, structureless] = value;
-  archive(mixture, pose, margin, crowded, one_view, occupancy, group, sites, width, held_out, rounds, escaped,
-          twins, cut, far, structureless);
-}
-template <class Archive>
-void fields(Archive& archive, RoundsUnderWay& value) {
-  auto& [round, searching, state, best] = value;
-  archive(round, searching, state, best);
-}
-template <class Archive>
-void fields(Archive& archive, FusedState& value) {
-  auto& [state, noise] = value;
-  archive(state, noise);
+void fields(Archive& archive, Symmetry& value) {
+  auto& [asked, in_use, group, canonical_from_template, gain, gain_std, tried, unit, unit_share] = value;
+  archive(asked, in_use, group, canonical_from_template, gain, gain_std, tried, unit, unit_share);
 }
 template <class Archive>
 void fields(Archive& archive, StartReport& value) {
-  auto& [name, held_out, final_held_out, won] = value;
-  archive(name, held_out, final_held_out, won);
+  auto& [name, held_out, gain, gain_std, won] = value;
+  archive(name, held_out, gain, gain_std, won);
 }
 template <class Archive>
-void fields(Archive& archive, StartsOutcome& value) {
-  auto& [winner, report, agreement, finished] = value;
-  archive(winner, report, agreement, finished);
+void fields(Archive& archive, CoarseState& value) {
+  auto& [pose, crowded, group, continuous, symmetry, starts, agreement, weights_sha256] = value;
+  bool has = symmetry.has_value();
+  Symmetry known = symmetry.value_or(Symmetry{});
+  archive(pose, crowded, group, continuous, has, known, starts, agreement, weights_sha256);
+  if (has) symmetry = known;
+}
+template <class Archive>
+void fields(Archive& archive, Fit& value) {
+  auto& [mixture, pose, noise, group, margin, occupancy, evidence, rounds, escaped] = value;
+  archive(mixture, pose, noise, group, margin, occupancy, evidence, rounds, escaped);
+}
+template <class Archive>
+void fields(Archive& archive, FineState& value) {
+  auto& [fit] = value;
+  archive(fit);
 }
 
 }  // namespace states

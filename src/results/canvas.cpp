@@ -69,13 +69,13 @@ void Canvas::text(std::size_t x, std::size_t y, const std::string& line, std::si
   }
 }
 
-void Canvas::write_png(const std::string& path) const {
+std::string Canvas::png() const {
   std::string bytes;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   if (!info || setjmp(png_jmpbuf(png))) {
     png_destroy_write_struct(&png, &info);
-    throw smlm::Error(smlm::Fault::io, path, "the picture could not be encoded");
+    throw smlm::Error(smlm::Fault::resource, "picture", "could not be encoded");
   }
   png_set_write_fn(png, &bytes, append, flush);
   png_set_IHDR(png, info, static_cast<png_uint_32>(width_), static_cast<png_uint_32>(height_), 8,
@@ -84,7 +84,9 @@ void Canvas::write_png(const std::string& path) const {
   for (std::size_t y = 0; y < height_; ++y) png_write_row(png, &rgb_[3 * y * width_]);
   png_write_end(png, nullptr);
   png_destroy_write_struct(&png, &info);
-  smlm::write_file_atomically(path, bytes);
+  return bytes;
 }
+
+void Canvas::write_png(const std::string& path) const { smlm::write_file_atomically(path, png()); }
 
 }  // namespace polar::results

@@ -32,7 +32,9 @@ class Canvas {
     return 6 * scale * line.size();
   }
 
-  /// PNG, 8 bits a channel, written whole or not at all.
+  /// PNG, 8 bits a channel.
+  std::string png() const;
+  /// The same as a file, written whole or not at all. Throws smlm::Error (io).
   void write_png(const std::string& path) const;
 
  private:

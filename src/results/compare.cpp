@@ -1,14 +1,18 @@
 #include "polar/results/compare.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
 
 #include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/symmetry_group.hpp"
 #include "smlm/error.hpp"
+#include "smlm/number_text.hpp"
 
 namespace polar {
 
@@ -54,8 +58,40 @@ std::map<std::string, const PoseRow*> by_name(const std::vector<PoseRow>& rows, 
   return index;
 }
 
+// The rows with numbers spelt in one way; nothing where an id is no number or two are the same one.
+std::optional<std::vector<PoseRow>> by_number(std::vector<PoseRow> rows) {
+  std::set<std::string> seen;
+  for (PoseRow& row : rows) {
+    double value = 0;
+    const char *begin = row.particle.data(), *end = begin + row.particle.size();
+    const auto parsed = std::from_chars(begin, end, value);
+    if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
+    row.particle = smlm::number_text(value);
+    if (!seen.insert(row.particle).second) return std::nullopt;
+  }
+  return rows;
+}
+
+std::size_t shared_names(const std::vector<PoseRow>& a, const std::vector<PoseRow>& b) {
+  std::set<std::string> names;
+  for (const PoseRow& row : a) names.insert(row.particle);
+  return static_cast<std::size_t>(
+      std::count_if(b.begin(), b.end(), [&](const PoseRow& row) { return names.count(row.particle) > 0; }));
+}
+
 std::vector<Difference> differences(const std::vector<PoseRow>& estimate, const std::vector<PoseRow>& truth,
                                     Comparison& out) {
+  constexpr std::size_t fewest = 2;
+  if (shared_names(estimate, truth) < fewest) {
+    const auto estimate_by_number = by_number(estimate), truth_by_number = by_number(truth);
+    if (estimate_by_number && truth_by_number &&
+        shared_names(*estimate_by_number, *truth_by_number) >= fewest) {
+      out.note = "ids are matched as numbers: '" + truth.front().particle +
+                 "' of the truth is spelt otherwise in the "
+                 "estimate";
+      return differences(*estimate_by_number, *truth_by_number, out);
+    }
+  }
   const auto found = by_name(estimate, "estimated poses");
   by_name(truth, "true poses");
   std::vector<Difference> difference;
@@ -196,7 +232,11 @@ Comparison compare_poses(const std::vector<PoseRow>& estimate, const std::vector
   if (d.size() < 2)
     throw smlm::Error(smlm::Fault::input, "evaluation",
                       std::to_string(d.size()) + " of " + std::to_string(out.n_truth) +
-                          " true particles have an estimated pose",
+                          " true particles have an estimated pose" +
+                          (estimate.empty() || truth.empty()
+                               ? ""
+                               : " (ids are '" + truth.front().particle + "', ... in the truth and '" +
+                                     estimate.front().particle + "', ... in the estimate)"),
                       "at least two are needed; are both tables of the same particles?");
   std::vector<double> angle = pair_angles_deg(d, group, options.seed);
   std::sort(angle.begin(), angle.end());

@@ -3,9 +3,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "smlm/number_text.hpp"
+
 namespace polar::results {
 
-std::vector<std::string> split_csv(const std::string& line) {
+std::vector<std::string> split_csv(const std::string& line, char delimiter) {
   std::vector<std::string> fields(1);
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -15,7 +17,7 @@ std::vector<std::string> split_csv(const std::string& line) {
       ++i;
     } else if (c == '"') {
       quoted = !quoted;
-    } else if (c == ',' && !quoted) {
+    } else if (c == delimiter && !quoted) {
       fields.emplace_back();
     } else if (c != '\r') {
       fields.back() += c;
@@ -34,9 +36,7 @@ std::string csv_field(const std::string& text) {
 
 std::string csv_number(double value) {
   if (std::isnan(value)) return {};
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value + 0.0);  // -0 becomes 0
-  return {digits, end.ptr};
+  return smlm::number_text(value + 0.0);  // -0 becomes 0
 }
 
 std::string csv_length(double value_nm) {

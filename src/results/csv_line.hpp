@@ -6,12 +6,12 @@
 
 namespace polar::results {
 
-std::vector<std::string> split_csv(const std::string& line);
+std::vector<std::string> split_csv(const std::string& line, char delimiter = ',');
 
 /// The field as it must be written: quoted only where it needs to be; line breaks become spaces.
 std::string csv_field(const std::string& text);
 
-/// Shortest digits that read back to the same double; empty for NaN.
+/// smlm::number_text(); empty for NaN.
 std::string csv_number(double value);
 
 /// A length in nm with four decimals (0.1 pm: far below any localisation's uncertainty), in any locale.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "polar/core/median.hpp"
 #include "polar/core/rng.hpp"
 
 namespace polar {
@@ -17,12 +18,6 @@ constexpr double kSoftening = 0.6;  // voxels added to what is drawn: nothing fa
 constexpr std::size_t kMostVoxels = 192, kMostPlanarVoxels = 1024, kFewestVoxels = 32;
 
 using Table = smlm::LocalisationTable;
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 double sigma_nm(const smlm::Covariance& c, bool planar, bool largest) {
   const float variance = planar ? (largest ? std::max(c[0], c[3]) : std::min(c[0], c[3]))
@@ -40,19 +35,8 @@ std::size_t smooth_number(std::size_t least) {
   }
 }
 
-// A table moved by a pose, covariances turned along.
-Table moved(Table t, const Pose& pose) {
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const auto& x = t.position_nm[i];
-    const Eigen::Vector3d y = pose * Eigen::Vector3d(x[0], x[1], t.planar ? 0.0 : x[2]);
-    t.position_nm[i] = {y.x(), y.y(), t.planar ? x[2] : y.z()};
-    t.covariance_nm2[i] = rotated(pose.rotation, t.covariance_nm2[i]);
-  }
-  return t;
-}
-
 // The cube that both tables are drawn in.
-Volume cube(const Table& a, const Table& b) {
+Volume cube(const Table& a, const Table& b, std::size_t most_voxels) {
   const bool planar = a.planar;
   Eigen::Vector3d centre;
   std::vector<double> radius, sigma;
@@ -71,8 +55,9 @@ Volume cube(const Table& a, const Table& b) {
   const double fine_nm = quantile(std::move(sigma), 0.5);
   const double edge_nm = 2 * (kMargin * quantile(std::move(radius), kHeld) + kReach * fine_nm);
   const double wished = 2 * edge_nm / std::max(fine_nm, 1e-3 * edge_nm);
-  const std::size_t n = smooth_number(std::clamp(static_cast<std::size_t>(std::ceil(wished)), kFewestVoxels,
-                                                 planar ? kMostPlanarVoxels : kMostVoxels));
+  const std::size_t most = most_voxels > 0 ? most_voxels : planar ? kMostPlanarVoxels : kMostVoxels;
+  const std::size_t n =
+      smooth_number(std::clamp(static_cast<std::size_t>(std::ceil(wished)), kFewestVoxels, most));
   Volume v;
   v.planar = planar;
   v.size = {n, n, planar ? 1 : n};
@@ -86,9 +71,7 @@ Volume cube(const Table& a, const Table& b) {
 Volume drawn_inside(const Table& table, Volume grid, RenderOptions options) {
   options.lateral_extra_nm = std::hypot(options.lateral_extra_nm, kSoftening * grid.voxel_nm);
   options.axial_extra_nm = std::hypot(options.axial_extra_nm, kSoftening * grid.voxel_nm);
-  Table inside;
-  inside.planar = table.planar;
-  inside.particle_names = table.particle_names;
+  std::vector<bool> inside(table.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double factor = std::max(options.lateral_factor, options.axial_factor);
     const double extra = std::max(options.lateral_extra_nm, options.axial_extra_nm);
@@ -101,12 +84,9 @@ Volume drawn_inside(const Table& table, Volume grid, RenderOptions options) {
       fits = fits && table.position_nm[i][axis] - reach_nm >= low &&
              table.position_nm[i][axis] + reach_nm <= high;
     }
-    if (!fits) continue;
-    inside.position_nm.push_back(table.position_nm[i]);
-    inside.covariance_nm2.push_back(table.covariance_nm2[i]);
-    inside.particle.push_back(table.particle[i]);
+    inside[i] = fits;
   }
-  return render_into(std::move(grid), inside, options);
+  return render_into(std::move(grid), rows_to_draw(table, inside), options);
 }
 }  // namespace
 
@@ -115,19 +95,28 @@ bool ResolutionReport::supported() const {
   return std::isfinite(found) && !(control <= found);
 }
 
+DrawnShells shells_between(const Table& a, const RenderOptions& drawing_a, const Table& b,
+                           const RenderOptions& drawing_b, std::size_t most_voxels) {
+  if (a.size() == 0 || b.size() == 0) return {};
+  const Volume grid = cube(a, b, most_voxels);
+  DrawnShells out{grid.voxel_nm, drawn_inside(a, grid, drawing_a), drawn_inside(b, grid, drawing_b), {}};
+  out.shells = fourier_shells(out.first, out.second);
+  return out;
+}
+
 HalfMaps compare_half_maps(const Results& first, const Results& second, std::uint64_t seed) {
   HalfMaps out;
   out.first_particles = accepted_particles(first), out.second_particles = accepted_particles(second);
   if (out.first_particles == 0 || out.second_particles == 0) return out;
   out.first_from_second_nm = align_maps(first, second, seed);
   const Table a = superparticle(first), b = moved(superparticle(second), out.first_from_second_nm);
-  const Volume grid = cube(a, b);
-  const auto draw = [&](const Table& t, const Results& r) {
-    return drawn_inside(t, grid, calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm));
+  const auto drawing = [](const Results& r) {
+    return calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm);
   };
-  out.voxel_nm = grid.voxel_nm;
-  out.first_density = draw(a, first), out.second_density = draw(b, second);
-  out.shells = fourier_shells(out.first_density, out.second_density);
+  DrawnShells drawn = shells_between(a, drawing(first), b, drawing(second));
+  out.voxel_nm = drawn.voxel_nm;
+  out.first_density = std::move(drawn.first), out.second_density = std::move(drawn.second);
+  out.shells = std::move(drawn.shells);
   out.resolution = shell_resolution(out.shells);
   return out;
 }

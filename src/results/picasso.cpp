@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "csv_line.hpp"
 #include "known_column.hpp"
@@ -27,18 +28,11 @@ std::vector<T> column_or(const smlm::ExtraColumn* column, std::size_t rows, T fa
   return values;
 }
 
-std::vector<std::int32_t> groups(const smlm::LocalisationTable& table) {
-  std::vector<std::int32_t> id(table.particle_names.size());
-  bool numbers = true;
-  for (std::size_t i = 0; i < id.size(); ++i) {
-    const std::string& name = table.particle_names[i];
-    const auto parsed = std::from_chars(name.data(), name.data() + name.size(), id[i]);
-    numbers = numbers && parsed.ec == std::errc() && parsed.ptr == name.data() + name.size();
-  }
-  std::vector<std::int32_t> group;
-  for (const std::int64_t p : table.particle)
-    group.push_back(p < 0 ? -1 : numbers ? id[static_cast<std::size_t>(p)] : static_cast<std::int32_t>(p));
-  return group;
+std::string group_table(const std::vector<std::string>& names, const std::vector<std::int32_t>& number) {
+  std::string text = "group,particle\n";
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += std::to_string(number[i]) + "," + results::csv_field(names[i]) + "\n";
+  return text;
 }
 
 // Two documents: what Picasso wants of a camera, and, appended as its programs do, what was done to the
@@ -59,6 +53,26 @@ std::string sidecar(const smlm::LocalisationTable& table, std::uint32_t frames,
          "\nShift y (nm): " + results::csv_number(shift_nm[1]) + "\n";
 }
 }  // namespace
+
+std::vector<std::int32_t> picasso_groups(const std::vector<std::string>& names) {
+  constexpr std::int32_t kNone = -1;
+  std::vector<std::int32_t> group;
+  std::set<std::int32_t> taken;
+  for (const std::string& name : names) {
+    std::int32_t number = kNone;
+    const auto parsed = std::from_chars(name.data(), name.data() + name.size(), number);
+    const bool itself = parsed.ec == std::errc() && number >= 0 && std::to_string(number) == name;
+    group.push_back(itself && taken.insert(number).second ? number : kNone);
+  }
+  std::int32_t next = 0;
+  for (std::int32_t& number : group) {
+    if (number != kNone) continue;
+    while (taken.count(next) > 0) ++next;
+    number = next;
+    taken.insert(next);
+  }
+  return group;
+}
 
 std::array<double, 2> picasso_shift_nm(const smlm::LocalisationTable& table) {
   std::array<double, 2> shift = {0, 0};
@@ -85,7 +99,10 @@ void write_picasso(const std::string& path, const smlm::LocalisationTable& table
   const auto photons = column_or<float>(smlm::find_column(table, smlm::Quantity::photons), n, 1);
   const auto background = column_or<float>(smlm::find_column(table, smlm::Quantity::background), n, 0);
   const std::vector<float> one(n, 1.0f);
-  const std::vector<std::int32_t> group = groups(table);
+  const std::vector<std::int32_t> numbers = picasso_groups(table.particle_names);
+  std::vector<std::int32_t> group;
+  for (const std::int64_t p : table.particle)
+    group.push_back(p < 0 ? -1 : numbers[static_cast<std::size_t>(p)]);
   using smlm::h5::table_column;
   std::vector<smlm::h5::TableColumn> columns = {
       table_column("frame", frame),     table_column("x", x),     table_column("y", y),
@@ -100,6 +117,8 @@ void write_picasso(const std::string& path, const smlm::LocalisationTable& table
   auto file = smlm::h5::File::create(atomic);
   file.write_table("/locs", columns);
   file.close();
+  const std::filesystem::path stem = std::filesystem::path(path).replace_extension();
+  smlm::write_file_atomically(stem.string() + "_particles.csv", group_table(table.particle_names, numbers));
   const std::uint32_t frames = n == 0 ? 1 : *std::max_element(frame.begin(), frame.end()) + 1;
   smlm::write_file_atomically(std::filesystem::path(path).replace_extension(".yaml").string(),
                               sidecar(table, frames, shift_nm));

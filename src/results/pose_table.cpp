@@ -1,5 +1,6 @@
 #include "polar/results/pose_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -45,7 +46,10 @@ class Reader {
       throw smlm::Error(smlm::Fault::input, path, "cannot be opened",
                         "give a poses.csv or a result directory");
     next(header);
-    const std::vector<std::string> names = results::split_csv(header);
+    if (header.rfind("\xEF\xBB\xBF", 0) == 0) header.erase(0, 3);  // what spreadsheets put before UTF-8
+    // Where the decimal comma is at home, spreadsheets separate by semicolons.
+    if (header.find(',') == std::string::npos && header.find(';') != std::string::npos) delimiter_ = ';';
+    const std::vector<std::string> names = results::split_csv(header, delimiter_);
     for (std::size_t i = 0; i < names.size(); ++i)
       if (!column_.emplace(names[i], i).second) fail("column '" + names[i] + "' occurs twice");
     require("particle");
@@ -56,7 +60,7 @@ class Reader {
     std::vector<PoseRow> rows;
     for (std::string line; next(line);) {
       if (line.empty() || line == "\r") continue;
-      field_ = results::split_csv(line);
+      field_ = results::split_csv(line, delimiter_);
       if (field_.size() != column_.size())
         fail("has " + std::to_string(field_.size()) + " fields, the header " +
              std::to_string(column_.size()));
@@ -82,8 +86,9 @@ class Reader {
     return found == column_.end() ? std::string() : field_[found->second];
   }
   double number(const char* name) const {
-    const std::string value = text(name);
+    std::string value = text(name);
     if (value.empty()) return PoseRow::kNone;
+    if (delimiter_ == ';') std::replace(value.begin(), value.end(), ',', '.');
     double parsed = 0;
     const auto end = std::from_chars(value.data(), value.data() + value.size(), parsed);
     if (end.ec != std::errc() || end.ptr != value.data() + value.size())
@@ -116,13 +121,16 @@ class Reader {
       if (std::abs(q.norm() - 1) > kUnitTolerance) fail("has a quaternion that is not of length 1");
       r.template_from_view = Pose{q.normalized().toRotationMatrix(), {v[4], v[5], v[6]}};
     }
-    r.accepted = column_.count("accepted") ? text("accepted") == "1" : r.template_from_view.has_value();
+    const std::string accepted = text("accepted");
+    r.accepted = column_.count("accepted") ? accepted == "1" || accepted == "TRUE" || accepted == "True"
+                                           : r.template_from_view.has_value();
     return r;
   }
 
   std::string path_;
   std::ifstream in_;
   std::size_t line_ = 0;
+  char delimiter_ = ',';
   std::map<std::string, std::size_t> column_;
   std::vector<std::string> field_;
 };

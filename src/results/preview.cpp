@@ -4,12 +4,15 @@
 #include <cmath>
 
 #include "canvas.hpp"
+#include "scale_bar.hpp"
 
 namespace polar {
 
 namespace {
 using results::Canvas;
 using results::Colour;
+using results::length_label;
+using results::round_length;
 
 constexpr std::size_t kPanel_px = 360;  // longest edge of the largest panel
 constexpr std::size_t kGap_px = 12, kText = 2, kLegend_px = 44, kBar_px = 6;
@@ -92,23 +95,6 @@ void draw(Canvas& canvas, const std::vector<Layer>& layers, std::size_t left, do
       canvas.set(left + x, kGap_px + y, blended(layers, u, v));
     }
   canvas.text(left + 4, kGap_px + 4, std::string(p.across) + p.up, kText, kWhite);
-}
-
-// The largest of 1, 2, 5 x 10^k that is not longer than `most`.
-double round_length(double most) {
-  const double power = std::pow(10.0, std::floor(std::log10(most)));
-  for (const double step : {5.0, 2.0})
-    if (step * power <= most) return step * power;
-  return power;
-}
-
-std::string length_label(double nm) {
-  char text[32];
-  if (nm >= 1000)
-    std::snprintf(text, sizeof text, "%g um", nm / 1000);
-  else
-    std::snprintf(text, sizeof text, "%g nm", nm);
-  return text;
 }
 }  // namespace
 

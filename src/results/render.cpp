@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "polar/core/constants.hpp"
+#include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/fusion/effective.hpp"
 
@@ -22,12 +23,6 @@ struct Gaussian {
   Eigen::Matrix3d precision;
   double peak;
 };
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 double median_sigma_nm(const smlm::LocalisationTable& table) {
   std::vector<double> smallest;
@@ -113,6 +108,7 @@ Volume frame(const smlm::LocalisationTable& table, const RenderOptions& o) {
     longest = std::max(longest, high[axis] - low[axis]);
   }
   const double wished = o.voxel_nm > 0 ? o.voxel_nm : median_sigma_nm(table) / 2;
+  v.wished_voxel_nm = wished;
   v.voxel_nm = std::max({wished, longest / static_cast<double>(o.most_voxels_per_axis), kSmallestVoxel_nm});
   for (std::size_t axis = 0; axis < 3; ++axis) {
     v.size[axis] =

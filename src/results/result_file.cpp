@@ -136,6 +136,24 @@ void write_superparticle(File& file, const Results& r, const smlm::LocalisationT
   file.write("/input/rejected_rows", rows);
 }
 
+// Rejected particles as the table has them: the superparticle holds the others.
+void write_rejected(File& file, const Results& r) {
+  std::vector<double> position;
+  std::vector<std::int64_t> particle;
+  for (std::size_t i = 0; i < r.particles.particles.size(); ++i) {
+    if (r.registration.view[i].accepted) continue;
+    for (const std::uint32_t row : r.particles.particles[i].rows) {
+      const auto& x = r.particles.table.position_nm[row];
+      position.insert(position.end(), x.begin(), x.end());
+      particle.push_back(static_cast<std::int64_t>(i));
+    }
+  }
+  const std::size_t n = particle.size();
+  write_with_unit(file, "/rejected/position", position, {n, 3}, "nm",
+                  "x, y, z in the table's own coordinates");
+  write_with_unit(file, "/rejected/particle", particle, {n}, "1", "row of /poses");
+}
+
 void write_run(File& file, const Results& r) {
   const Registration& g = r.registration;
   file.make_group("/run");
@@ -143,17 +161,27 @@ void write_run(File& file, const Results& r) {
   file.write_strings("/run/libraries", r.provenance.libraries);
   file.write_strings("/run/configuration", {r.provenance.configuration});
   file.write_strings("/run/input_hash", {r.provenance.input_hash});
+  if (!r.provenance.command.empty()) file.write_strings("/run/command", {r.provenance.command});
+  if (!r.provenance.machine.empty()) file.write_strings("/run/machine", {r.provenance.machine});
+  if (!r.provenance.input_file.empty()) {
+    file.write_strings("/run/input_file", r.provenance.input_file);
+    file.write_strings("/run/input_sha256", r.provenance.input_sha256);
+  }
   if (!g.weights_sha256.empty()) file.write_string_attribute("/run", "weights_sha256", g.weights_sha256);
   file.write_attribute("/run", "seed", r.provenance.seed);
   file.write_attribute("/run", "rounds", static_cast<std::int32_t>(g.rounds));
   file.write_attribute("/run", "converged", static_cast<std::uint8_t>(g.converged ? 1 : 0));
   file.write_attribute("/run", "normalisation_scale_nm", r.normalisation.scale_nm);
   file.write_strings("/run/stopped_because", {g.stopped_because});
+  file.write_string_attribute("/run", "verdict", to_string(g.verdict));
+  file.write_string_attribute("/run", "verdict_reason", g.verdict_reason);
+  file.write_attribute("/run", "structure_gain", g.structure_gain);
+  file.write_attribute("/run", "structure_gain_std", g.structure_gain_std);
   std::vector<std::string> warnings = r.particles.table.warnings;
   warnings.insert(warnings.end(), g.warnings.begin(), g.warnings.end());
   file.write_strings("/run/warnings", warnings);
   std::vector<std::string> stage, start;
-  std::vector<double> seconds, held_out, final_held_out;
+  std::vector<double> seconds, held_out, gain, gain_std;
   std::vector<std::uint8_t> won;
   for (const auto& t : g.timings) {
     stage.push_back(t.stage);
@@ -162,14 +190,15 @@ void write_run(File& file, const Results& r) {
   for (const StartReport& s : g.starts) {
     start.push_back(s.name);
     held_out.push_back(s.held_out_log_likelihood);
-    final_held_out.push_back(s.final_held_out_log_likelihood);
+    gain.push_back(s.gain), gain_std.push_back(s.gain_std);
     won.push_back(s.won ? 1 : 0);
   }
   file.write_strings("/run/timings/stage", stage);
   file.write("/run/timings/seconds", seconds);
   file.write_strings("/run/starts/name", start);
   file.write("/run/starts/held_out_log_likelihood", held_out);
-  file.write("/run/starts/final_held_out_log_likelihood", final_held_out);
+  file.write("/run/starts/gain", gain);
+  file.write("/run/starts/gain_std", gain_std);
   file.write("/run/starts/won", won);
   file.write_attribute("/run/starts", "agreement", g.agreement);
   const double scale_nm = r.normalisation.scale_nm;
@@ -246,6 +275,7 @@ void write_result_file(const std::string& path, const Results& results,
   write_poses(file, results);
   write_template(file, results);
   write_superparticle(file, results, superparticle);
+  write_rejected(file, results);
   write_run(file, results);
   if (results.registration.symmetry)
     write_symmetry(file, *results.registration.symmetry, results.normalisation.scale_nm);
@@ -324,6 +354,7 @@ ResultRecord read_result_file(const std::string& path) {
   record.program = one_string(file, "/run/program");
   record.configuration = one_string(file, "/run/configuration");
   record.input_hash = one_string(file, "/run/input_hash");
+  record.warnings = file.read_strings("/run/warnings");
   return record;
 }
 

@@ -21,6 +21,29 @@ smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c) {
   return {s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2)};
 }
 
+smlm::LocalisationTable rows_to_draw(const smlm::LocalisationTable& table, const std::vector<bool>& wanted) {
+  smlm::LocalisationTable part;
+  part.planar = table.planar;
+  part.particle_names = table.particle_names;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!wanted[i]) continue;
+    part.position_nm.push_back(table.position_nm[i]);
+    part.covariance_nm2.push_back(table.covariance_nm2[i]);
+    part.particle.push_back(table.particle[i]);
+  }
+  return part;
+}
+
+smlm::LocalisationTable moved(smlm::LocalisationTable t, const Pose& pose) {
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const auto& x = t.position_nm[i];
+    const Eigen::Vector3d y = pose * Eigen::Vector3d(x[0], x[1], t.planar ? 0.0 : x[2]);
+    t.position_nm[i] = {y.x(), y.y(), t.planar ? x[2] : y.z()};
+    t.covariance_nm2[i] = rotated(pose.rotation, t.covariance_nm2[i]);
+  }
+  return t;
+}
+
 Pose template_from_table(const Results& results, std::size_t i) {
   const Pose& engine = results.registration.view[i].template_from_view;
   const Normalisation& n = results.normalisation;

@@ -8,7 +8,8 @@ namespace polar {
 void write_symmetry(smlm::h5::File& file, const Symmetry& s, double scale_nm) {
   file.make_group("/symmetry");
   file.write_string_attribute("/symmetry", "group", s.group);
-  file.write_attribute("/symmetry", "imposed", static_cast<std::uint8_t>(s.imposed ? 1 : 0));
+  file.write_attribute("/symmetry", "imposed", static_cast<std::uint8_t>(s.in_use ? 1 : 0));
+  file.write_attribute("/symmetry", "asked", static_cast<std::uint8_t>(s.asked ? 1 : 0));
   file.write_string_attribute("/symmetry", "convention", "x_canonical = rotation (x_template - centre)");
   file.write_attribute("/symmetry", "held_out_gain", s.gain);
   file.write_attribute("/symmetry", "held_out_gain_std", s.gain_std);

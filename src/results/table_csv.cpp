@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "csv_line.hpp"
 #include "heading.hpp"
+#include "smlm/column.hpp"
 
 namespace polar {
 
@@ -24,6 +26,18 @@ std::vector<std::size_t> elements(bool is_diagonal, bool planar) {
   return planar ? std::vector<std::size_t>{0, 1, 3} : std::vector<std::size_t>{0, 1, 2, 3, 4, 5};
 }
 
+// A kept column's heading, so that no reader takes it for a position or a particle of this table, and none
+// stands twice.
+std::string kept_heading(const smlm::ExtraColumn& column, std::set<std::string>& used) {
+  std::string name = results::heading(column);
+  const auto match = smlm::match_heading(smlm::parse_heading(name));
+  if (match && (match->quantity <= smlm::Quantity::z || match->quantity == smlm::Quantity::particle))
+    name = "input " + name;
+  std::string unique = name;
+  for (int n = 2; !used.insert(unique).second; ++n) unique = name + " (" + std::to_string(n) + ")";
+  return unique;
+}
+
 std::string header(const smlm::LocalisationTable& table, bool is_diagonal) {
   std::string text = table.planar ? "x [nm],y [nm]," : "x [nm],y [nm],z [nm],";
   for (const std::size_t e : elements(is_diagonal, table.planar)) {
@@ -31,7 +45,8 @@ std::string header(const smlm::LocalisationTable& table, bool is_diagonal) {
     text += is_diagonal ? "uncertainty_" + name.substr(1) + " [nm]," : "sigma_" + name + " [nm^2],";
   }
   text += "particle";
-  for (const smlm::ExtraColumn& c : table.extra) text += "," + results::csv_field(results::heading(c));
+  std::set<std::string> used;
+  for (const smlm::ExtraColumn& c : table.extra) text += "," + results::csv_field(kept_heading(c, used));
   return text + "\n";
 }
 

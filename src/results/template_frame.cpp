@@ -70,6 +70,8 @@ void move_template(Registration& r, const Pose& new_from_old) {
     view.covariance = lever * view.covariance * lever.transpose();
   }
   r.fused.centre = (rotation * r.fused.centre).colwise() + new_from_old.translation;
+  if (r.other)
+    r.other->fused.centre = (rotation * r.other->fused.centre).colwise() + new_from_old.translation;
   if (!r.symmetry) return;
   r.symmetry->canonical_from_template = r.symmetry->canonical_from_template * new_from_old.inverse();
   r.symmetry->unit = (rotation * r.symmetry->unit).colwise() + new_from_old.translation;

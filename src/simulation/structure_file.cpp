@@ -10,6 +10,7 @@
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
 #include "smlm/isolation.hpp"
+#include "smlm/points.hpp"
 
 namespace polar {
 
@@ -122,6 +123,30 @@ Structure read_shapes(const StructureFile& file) {
 }
 }  // namespace
 
+// Whether a text holds nothing but three columns of numbers, without a header of any kind.
+bool is_bare(const std::string& path) {
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    const auto first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos) continue;
+    if (line[first] == '#' || line[first] == '%') return false;
+    return leading_numbers(line).size() == 3;
+  }
+  return true;
+}
+
+// A table: its header says which columns are x, y and z, and in which unit.
+Structure read_named(const std::string& path) {
+  smlm::Points points = smlm::read_points(path, {});
+  std::vector<double> flat;
+  for (const auto& position : points.position_nm) flat.insert(flat.end(), position.begin(), position.end());
+  Structure s;
+  s.site_nm = as_matrix(flat);
+  if (points.planar) points.warnings.emplace_back("has no z: the structure is flat");
+  for (std::string& warning : points.warnings) s.warnings.push_back(path + ": " + warning);
+  return s;
+}
+
 Structure read_structure(const StructureFile& file) {
   std::error_code ec;
   if (!std::filesystem::is_regular_file(file.path, ec)) fail(file.path, "no such file");
@@ -130,8 +155,14 @@ Structure read_structure(const StructureFile& file) {
     s = smlm::read_isolated(file.path, [&] { return read_shapes(file); });
   } else {
     const std::filesystem::path path = file.path;
+    if (path.extension() == ".ply") {
+      s.site_nm = read_ply(file.path);
+    } else if (is_bare(file.path)) {
+      s.site_nm = read_text(file.path, 1, kMostSites);
+    } else {
+      s = read_named(file.path);
+    }
     s.name = path.stem().string();
-    s.site_nm = path.extension() == ".ply" ? read_ply(file.path) : read_text(file.path, 1, kMostSites);
   }
   if (s.site_nm.cols() == 0) fail(file.path, "holds no points");
   if (!s.site_nm.allFinite()) fail(file.path, "holds a coordinate that is not a finite number");

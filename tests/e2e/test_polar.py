@@ -196,7 +196,7 @@ class FullDisk(PolarCase):
             self.assertRegex(done.stderr, r"\Aerror: out/\w[^\n]+\n\Z")  # never a temporary name
             self.assertEqual(done.stdout, "")
             whole = {path.name for path in out.iterdir()}  # of two files the first may be there, never a part of one
-            self.assertLessEqual(whole, {"aligned.hdf", "aligned.yaml"}, (name, limit))
+            self.assertLessEqual(whole, {"aligned.hdf", "aligned.yaml", "aligned_particles.csv"}, (name, limit))
         for path in out.iterdir():
             path.unlink()
 

@@ -10,9 +10,10 @@ set(below_fusion smlm core flames)
 set(below_registration smlm core flames model latent fusion)
 set(below_simulation ${below_registration} registration)
 set(below_results ${below_simulation} simulation)
-set(below_pipeline ${below_results} results)
+set(below_report ${below_results} results)
+set(below_pipeline ${below_report} report)
 set(below_cli ${below_pipeline} pipeline)
-set(layers smlm core flames model latent fusion registration simulation results pipeline cli)
+set(layers smlm core flames model latent fusion registration simulation results report pipeline cli)
 
 # Library header -> the place (a pattern) that alone may include it.
 set(homes
@@ -24,6 +25,7 @@ set(homes
   "matio=smlm/src/"
   "png.h=src/results/"
   "tiffio.h=src/results/"
+  "kainjow/=src/report/layout"
   "CLI/=src/cli/")
 
 function(check_file file layer)

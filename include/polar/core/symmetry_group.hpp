@@ -12,6 +12,10 @@ namespace polar {
 /// comes first. Throws smlm::Error (usage) for any other name.
 std::vector<Eigen::Matrix3d> symmetry_rotations(const std::string& name);
 
+/// Whether no image g * rotation is nearer to the identity: of every orbit one is (two on its border). What a
+/// search over the poses of a symmetric template looks at.
+bool in_asymmetric_unit(const std::vector<Eigen::Matrix3d>& group, const Eigen::Matrix3f& rotation);
+
 /// Whether it has a list for that name.
 bool is_symmetry_group(const std::string& name);
 

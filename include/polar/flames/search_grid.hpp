@@ -21,7 +21,8 @@ struct SearchGrid {
 Eigen::Matrix3f grid_turn(bool planar, KeyedRandom random);
 
 /// Grid of about `rotations` rotations with the neighbourhood that reaches as far as 256 of 50,000 do;
-/// planar: rotations about z. Large graphs are kept in the cache directory.
-SearchGrid search_grid(int rotations, bool planar);
+/// planar: rotations about z. Large graphs are kept in the cache directory. Of a symmetric template's poses
+/// only one asymmetric unit of `group` is in it.
+SearchGrid search_grid(int rotations, bool planar, const std::vector<Eigen::Matrix3d>& group = {});
 
 }  // namespace polar

@@ -13,11 +13,14 @@ namespace polar {
 
 struct PolishedPose {
   Pose template_from_view;
-  /// Inverse of the observed information, for x -> exp(w) x + v applied after template_from_view, order (w,
+  /// H^-1 J H^-1, H the observed information, J the sum over bursts of the outer products of their gradients
+  /// (P. J. Huber, Proc. 5th Berkeley Symposium 1, 1967; K.-Y. Liang and S. L. Zeger, Biometrika 73, 1986): right where the
+  /// localisations of a burst say the same. H^-1 where they are no more than a pose has parameters. For x -> exp(w) x + v applied after template_from_view, order (w,
   /// v).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   bool information_positive =
       false;                  // false: flat or saddle, the covariance is the pseudo-inverse of the Fisher sum
+  double temper = 1;          // by which the log likelihood counts its bursts too often: 6 / tr(H^-1 J), at most 1
   double log_likelihood = 0;  // mean per localisation
   double outlier_fraction = 0;  // expected share that the template does not explain
   bool improved = false;        // by the least squares, over the pose given
@@ -26,7 +29,9 @@ struct PolishedPose {
 /// Poses template_from_view, one a view of `data`, template fixed. Minimises with Ceres, for responsibilities
 /// r_jk renewed twice, 1/2 sum_jk r_jk |C_j^(-1/2) (x_j - R^T (mu_k - t))|^2; the outlier class makes
 /// it robust.
+/// `burst`: of every localisation of every view, in the order of `data`; -1: one of its own. None: all are.
 std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
-                                 const std::vector<Pose>& template_from_view);
+                                 const std::vector<Pose>& template_from_view,
+                                 const std::vector<std::vector<int>>& burst = {});
 
 }  // namespace polar

@@ -15,6 +15,7 @@ struct BatchFlags {
   int jobs = 1;                   // data sets at a time
   int threads = 0;                // of all jobs together; 0: what the machine grants
   bool overwrite = false;         // replace results of another input or configuration
+  std::string command{};          // as typed; kept in every record
 };
 
 struct BatchOutcome {
@@ -26,7 +27,7 @@ struct BatchOutcome {
 /// Runs every data set into a folder of its name. A complete result of the same input and configuration is
 /// kept, a run that was cut short continues, and a data set that fails, however it does, stops no other.
 /// summary.csv, conditions.csv and batch.json are written at the beginning and whenever a data set ends; they
-/// say what the folders hold. Call it while this process has no other thread. Throws smlm::Error (usage) for
+/// say what the folders hold; report.html shows it at the end. Call it while this process has no other thread. Throws smlm::Error (usage) for
 /// a name in `only` that is none, (io) when the output directory cannot be written.
 BatchOutcome run_batch(const BatchConfig& config, const BatchFlags& flags, Progress& progress,
                        const Engine& engine = default_engine());

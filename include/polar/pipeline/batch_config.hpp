@@ -19,7 +19,7 @@ struct BootstrapOptions {
 /// One sentence per fault, each starting with its key; empty when the options can be used.
 std::vector<std::string> violations(const BootstrapOptions& options);
 
-struct BatchDataset {
+struct DatasetConfig {
   std::string name;       // of its folder in the output directory
   std::string condition;  // data sets of the same text are compared with those of another
   RunConfig run;
@@ -30,7 +30,7 @@ struct BatchDataset {
 
 struct BatchConfig {
   std::string directory = "batch";  // holds a folder a data set and the tables over all
-  std::vector<BatchDataset> datasets;
+  std::vector<DatasetConfig> datasets;
   BootstrapOptions bootstrap;
 };
 

@@ -15,6 +15,7 @@ namespace polar {
 struct RunFlags {
   bool overwrite = false;  // replace what an earlier run wrote
   bool resume = false;     // keep a complete result of the same computation, continue one that was cut short
+  std::string command{};   // as typed; kept in the record
 };
 
 struct RunOutcome {

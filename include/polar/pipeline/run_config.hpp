@@ -16,6 +16,7 @@ struct OutputOptions {
   std::vector<std::string> formats = {"hdf5", "vtkhdf", "csv"};
   double voxel_nm = 0;  // of template.hdf and preview.png; 0: half the median uncertainty
   bool preview = true;  // preview.png
+  bool report = true;   // report.html, the page to look at
   /// own: the template in the frame that its symmetry or its principal axes suggest | raw: as the engine left
   /// it.
   std::string frame = "own";
@@ -27,8 +28,16 @@ struct OutputOptions {
   std::string resolution = "none";
 };
 
+/// A pattern among input.files.
+struct MatchedPattern {
+  std::string pattern;  // as written
+  std::size_t files = 0;
+  std::vector<std::string> but_for_case;  // files that would match if case did not matter
+};
+
 struct RunConfig {
   std::vector<std::string> files;  // absolute, expanded
+  std::vector<MatchedPattern> patterns;
   smlm::ReadOptions read;
   RegistrationOptions registration;
   /// poses.csv with poses to start from (template_from_view), instead of registration.starts; empty: none are

@@ -9,19 +9,23 @@
 #include "polar/core/view.hpp"
 #include "polar/latent/options.hpp"
 #include "polar/registration/checkpoint.hpp"
+#include "polar/registration/engine_options.hpp"
 #include "polar/registration/registration.hpp"
 
 namespace polar {
 
 struct RegistrationOptions {
   std::uint64_t seed = 1;  // every random choice follows from it
-  std::vector<std::string> starts = {"polar", "random", "imaged", "assembled"};  // hypotheses that compete
+  std::vector<std::string> starts = {"polar", "random", "imaged"};  // hypotheses that compete
   std::string method = "likelihood";  // likelihood | latent: the paper's registration and nothing after it
   std::string search = "fast";        // fast | exhaustive
   std::string optimizer = "levenberg_marquardt";  // of the latent registration: | adamw (the paper's)
   std::string weights;                            // of the autoencoder; empty: those that ship
   LatentOptions latent;                           // seed, search and optimizer are taken from here
-  std::string symmetry = "none";  // none | detect | C<n>, D<n>, T, O, I: imposed on the template
+  std::string symmetry = "auto";  // auto | none | detect | C<n>, D<n>, T, O, I: imposed on the template
+  double tilt_deg = 0;            // 0: any orientation; else standard deviation of particles that lie upright
+  bool flip = false;              // or upside down
+  EngineOptions engine;
 };
 
 /// One sentence per fault, empty when the options can be used.

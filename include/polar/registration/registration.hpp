@@ -19,6 +19,7 @@ struct RegisteredView {
   /// rad^2, rad x length, length^2.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   double log_likelihood = 0;    // mean natural log density per localisation (length^-3, planar length^-2)
+  double posterior_share = 0;   // of the pose posterior that lies at this pose and not at another basin
   double margin = 0;            // log_likelihood minus that of the second-best basin found, >= 0
   double outlier_fraction = 0;  // expected share of localisations that the template does not explain
   double visibility = 1;        // estimated share of the template that the view shows
@@ -43,13 +44,23 @@ struct Calibration {
   double lateral_extra = 0, axial_extra = 0;    // b, length
 };
 
+/// A hypothesis that competed: a start, or what was proposed to the best one.
 struct StartReport {
-  std::string name;  // "random 3", "imaged", ...
-  double held_out_log_likelihood =
-      0;  // after the short run, per localisation that was kept out of the fusion
-  double final_held_out_log_likelihood =
-      0;  // after registering all views; 0 for those that did not get so far
+  std::string name;                    // "random 3", "imaged", "regrown 1", ...
+  double held_out_log_likelihood = 0;  // mean over views of the mean per localisation that was not fitted
+  double gain = 0, gain_std = 0;       // of it over the best before: paired over views, and its standard error
   bool won = false;
+};
+
+/// What a registration says of itself.
+enum class Verdict { none, ambiguous, found };
+std::string to_string(Verdict verdict);
+
+/// An average that lost by evidence: the symmetric one, or the one without symmetry.
+struct OtherTemplate {
+  std::string group;  // C1: none
+  FusedTemplate fused;
+  double gain = 0, gain_std = 0;  // held-out log density per localisation over the result's; negative
 };
 
 struct Registration {
@@ -57,9 +68,13 @@ struct Registration {
   FusedTemplate fused;
   Calibration calibration;
   std::vector<StartReport> starts;
-  /// Where the two best random starts, each registered on all views, pose 0.95 of the views or more alike (15
-  /// degrees, up to one common rotation): that share, and no other start was run. Else 0.
+  /// Share of the views that the two best starts pose alike, up to one common rotation; 0 of a single start.
   double agreement = 0;
+  Verdict verdict = Verdict::none;
+  std::string verdict_reason = "never ran";  // one sentence
+  /// Held-out log density per localisation above that of a cloud without structure, and its standard error.
+  double structure_gain = 0, structure_gain_std = 0;
+  std::optional<OtherTemplate> other;  // where a symmetry was found or imposed
   std::optional<Symmetry> symmetry;  // where it is asked for
   int rounds = 0;
   bool converged = false;

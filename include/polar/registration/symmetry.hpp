@@ -19,7 +19,8 @@ struct SymmetryTrial {
 
 /// Lengths are in units of Normalisation::scale_nm.
 struct Symmetry {
-  bool imposed = false;  // else detected: the poses and the template know nothing of it
+  bool asked = false;  // named in the configuration; else found
+  bool in_use = false;  // template and poses have it; else the average without it explains more
   /// As core/symmetry_group.hpp names it; C1: none. Where no turn about an axis can be told from another:
   /// Cinf, Dinf (with two-fold axes across), or SO3, a sphere.
   std::string group = "C1";

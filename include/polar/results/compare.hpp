@@ -42,12 +42,14 @@ struct Comparison {
   double median_translation_nm = 0;  // over the n_aligned particles
   std::size_t n_aligned = 0;         // particles within kAlignedWithin_deg of G
   std::vector<ParticleError> particle;
+  std::string note;  // how ids were matched, where they are not spelt alike; else empty
 };
 
 /// A particle farther from G than this does not take part in translation statistics.
 constexpr double kAlignedWithin_deg = 30;
 
-/// Matches particles by name. Throws smlm::Error (input) when fewer than two can be compared, or a name
+/// Matches particles by name; where fewer than two names occur in both tables, and all are numbers, by number
+/// ("1.0" and "1"), which is noted. Throws smlm::Error (input) when fewer than two can be compared, or a name
 /// occurs twice.
 Comparison compare_poses(const std::vector<PoseRow>& estimate, const std::vector<PoseRow>& truth,
                          const CompareOptions& options);

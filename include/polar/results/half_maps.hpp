@@ -17,6 +17,18 @@ Pose align_maps(const Results& first, const Results& second, std::uint64_t seed)
 /// correlates. A half without an accepted particle leaves the resolution NaN.
 HalfMaps compare_half_maps(const Results& first, const Results& second, std::uint64_t seed);
 
+/// Two tables of one frame, drawn in one cube (as the options say, localisations at its faces left out), and
+/// what they have in common. `most_voxels` along an edge, a product of 2, 3 and 5; 0: as compare_half_maps
+/// takes them.
+struct DrawnShells {
+  double voxel_nm = 0;
+  Volume first, second;
+  FourierShells shells;
+};
+DrawnShells shells_between(const smlm::LocalisationTable& a, const RenderOptions& drawing_a,
+                           const smlm::LocalisationTable& b, const RenderOptions& drawing_b,
+                           std::size_t most_voxels = 0);
+
 /// The control's input: every localisation's place is drawn from a Gaussian about its particle's mean, as
 /// wide as the particle (root mean square, the same along every axis), keyed by (seed, particle). All else
 /// stays, uncertainties too.

@@ -30,6 +30,7 @@ struct Volume {
   double voxel_nm = 1;
   bool planar = false;
   std::vector<float> density;
+  double wished_voxel_nm = 1;  // smaller where the limits of RenderOptions made the voxel grow
 
   float at(std::size_t x, std::size_t y, std::size_t z) const {
     return density[(z * size[1] + y) * size[0] + x];

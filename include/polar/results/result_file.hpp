@@ -15,6 +15,7 @@ struct ResultRecord {
   std::vector<PoseRow> poses;  // without their standard deviations
   RenderOptions render;        // its calibration
   std::string program, configuration, input_hash;
+  std::vector<std::string> warnings;  // of the run: what it assumed
 };
 
 /// Writes the record whole or not at all.

@@ -23,6 +23,8 @@ struct Provenance {
   std::uint64_t seed = 0;
   std::string input_hash;              // of the files' content and the configuration (see pipeline)
   std::vector<std::string> libraries;  // "HDF5 1.10.8", ...
+  std::string command{}, machine{};    // as typed; processor, threads, memory, system
+  std::vector<std::string> input_file{}, input_sha256{};  // parallel: everything that was read
 };
 
 /// A run's result. particles.particles, normalisation.centre_nm and registration.view are parallel: one
@@ -42,6 +44,12 @@ std::size_t accepted_particles(const Results& results);
 
 /// R C R^T of a stored covariance.
 smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c);
+
+/// Of a table, what rendering needs of the rows that are wanted.
+smlm::LocalisationTable rows_to_draw(const smlm::LocalisationTable& table, const std::vector<bool>& wanted);
+
+/// A table moved by a pose (nm), covariances turned along; the z of a planar table stays.
+smlm::LocalisationTable moved(smlm::LocalisationTable table, const Pose& pose);
 
 /// The engine's pose of particle i in nm: x_template = R x_nm + t_nm with x_nm as in the table and the
 /// template frame = scale_nm * engine frame.

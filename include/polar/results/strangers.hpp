@@ -2,6 +2,7 @@
 // something else.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,12 @@ struct Stranger {
   /// badly; positive: it sits on few places of the template, as a smaller structure does.
   double deviation = 0;
 };
+
+/// Beyond these log likelihoods a particle is a stranger; NaN where fewer than ten are given.
+struct StrangerLimits {
+  double low = std::numeric_limits<double>::quiet_NaN(), high = low;
+};
+StrangerLimits stranger_limits(const std::vector<double>& log_likelihoods);
 
 /// The particles more than 6 robust standard deviations (1.4826 times the median absolute deviation, at least
 /// 0.02 nat) from the median, farthest first. None where fewer than ten particles are accepted.

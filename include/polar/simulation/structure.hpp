@@ -12,6 +12,7 @@ struct Structure {
   std::string name;
   Eigen::Matrix3Xd site_nm;       // 3 x K, structure frame
   std::string symmetry = "none";  // rotations that map the sites onto themselves: none, C9, D8, T, O, ...
+  std::vector<std::string> warnings = {};  // what a file of it left open
 
   /// Largest distance of a site from the structure's centre.
   double radius_nm() const;

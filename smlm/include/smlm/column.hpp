@@ -35,12 +35,19 @@ enum class Quantity {
 /// What a column of uncertainties holds.
 enum class Spread { standard_deviation, variance };
 
+/// How plainly a name claims its quantity; a plainer claim wins.
+enum class Claim {
+  weak,    // only when no other column claims the quantity, and said: a bare "sigma"
+  likely,  // "sigma_x": beside an uncertainty by name it is the width of the PSF
+  plain
+};
+
 /// A name that some program gives to a quantity. Names are compared in lower case, with blanks and
-/// hyphens as underscores, without unit.
+/// hyphens as underscores, without unit. Names of uncertainties that are made of words ("X_loc_error",
+/// "error_x", "var_z") need no alias: see uncertainty_named().
 struct Alias {
   std::string_view name;
   std::string_view unit = {};  // what the name itself implies; empty: it implies none
-  bool weak = false;           // only when no other column claims the quantity (a bare "sigma")
 };
 
 struct ColumnSpec {
@@ -72,8 +79,16 @@ Heading parse_heading(std::string_view cell);
 struct ColumnMatch {
   Quantity quantity = Quantity::other;
   std::string unit;  // from the header or the alias; empty when neither says
-  bool weak = false;
+  Claim claim = Claim::plain;
+  Spread spread = Spread::standard_deviation;
 };
 std::optional<ColumnMatch> match_heading(const Heading& heading);
+
+/// A name made of words for an uncertainty (precision, error, crlb, std, var, sigma, ...), an axis (x, y, z,
+/// xy, lateral, axial) and what goes without saying (loc, position, a unit): what it is an uncertainty of.
+std::optional<ColumnMatch> uncertainty_named(const std::string& normalised_name);
+
+/// Whether some word of the name speaks of an uncertainty, whatever else it says.
+bool sounds_like_uncertainty(const std::string& normalised_name);
 
 }  // namespace smlm

@@ -35,6 +35,7 @@ struct Inspection {
   std::vector<std::string> mapping;
   std::vector<Rejection> rejected;
   std::vector<std::string> warnings;
+  std::string obstacle;  // why nothing could be registered; empty: it can
 };
 
 Inspection inspect(const LocalisationTable& table);
@@ -44,9 +45,10 @@ std::string to_text(const Inspection& inspection);
 /// One JSON object with the fields of Inspection; NaN becomes null, invalid UTF-8 is replaced.
 std::string to_json(const Inspection& inspection);
 
-/// Warnings about numbers that hint at a wrong unit or a wrong column: uncertainties as large as the width of
-/// a PSF or as the particles, particles far below a nanometre or beyond ten micrometres. Part of the warnings
-/// that read_tables() gives.
+/// Warnings about numbers that hint at a wrong unit or a wrong column, with the column and its unit:
+/// uncertainties as large as the width of a PSF or as the particles, or below any microscope's; particles
+/// below a nanometre or beyond ten micrometres, of one file far larger than those of another, far deeper than
+/// wide; and single particles far larger than the rest. Part of the warnings that read_tables() gives.
 std::vector<std::string> implausibilities(const LocalisationTable& table);
 
 }  // namespace smlm

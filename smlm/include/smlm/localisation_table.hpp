@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace smlm {
@@ -39,9 +41,15 @@ struct LocalisationTable {
   std::vector<std::string> formats;  // the reader of each file
   std::vector<ExtraColumn> extra;
   std::vector<Rejection> rejected;
-  std::vector<std::string> mapping;   // one line a used column: "x <- 'x [nm]' (nm)"
+  std::vector<std::string> mapping;  // one line a used column: "x <- 'x [nm]' (nm)"
+  /// What the rows of no particle said instead, and how often: "-1", "", "nan".
+  std::vector<std::pair<std::string, std::uint64_t>> unassigned;
+  /// Keys of the input section that had a say in how the table was read.
+  std::set<std::string> keys_used;
   std::vector<std::string> warnings;  // one line each, for the log and the report
-  bool planar = false;                // no z, or a constant one: registered in the plane
+  bool planar = false;                // no z, or one that says nothing: registered in the plane
+  bool maybe_planar = false;          // z is constant, over too few rows to tell
+  double position_unit_nm = 1;        // what x was given in
   bool axial_sigma_assumed = false;   // sigma_z was absent: 2 x lateral
   bool sigma_assumed = false;         // no uncertainty at all in the file
 

@@ -15,9 +15,9 @@ namespace smlm {
 
 /// Where a quantity stands in a table whose header says nothing, or says it wrongly.
 struct ColumnMapping {
-  std::string name;          // the column's header, or its 1-based number in a table without header
-  std::string unit = "nm";   // nm, um, mm, m or px; for a covariance the same, meant squared
-  std::string kind = "std";  // std | variance; only for uncertainties
+  std::string name;  // the column's header, or its 1-based number in a table without header
+  std::string unit;  // nm, um, mm, m, px or angstrom (squared for variances); empty: as the header says
+  std::string kind;  // std | variance, of uncertainties; empty: as the header says, else std
 };
 
 struct ReadOptions {
@@ -33,6 +33,9 @@ struct ReadOptions {
   /// What uncertainties are that nothing tells the kind of (.mat files): std | variance; empty: std, with a
   /// warning where files of that kind hold either.
   std::string sigma_kind;
+  /// Whether z is ignored, so that everything is registered in the plane; without it a table is planar where
+  /// its z says nothing (absent, empty, or the same everywhere).
+  bool planar = false;
   /// Unit of Picasso's lpz, which its versions disagree on: nm | px.
   std::string lpz_unit = "nm";
   /// column: a column names the particle of each row; one_per_file: a file is a particle; picked: particles
@@ -40,8 +43,9 @@ struct ReadOptions {
   std::string particles = "column";
   /// How, where particles are picked.
   PickOptions pick;
-  /// The particle id that means "none"; empty: -1, and 0 in SMAP's sitenumbers.
-  std::string unassigned_particle;
+  /// Particle ids that mean "none", beside those that always do: negative numbers, empty, nan, NA, None,
+  /// null. Empty: 0 in SMAP's sitenumbers, else no other.
+  std::vector<std::string> unassigned_particle;
   /// Leave out rows whose position or uncertainty cannot be used, and count them; else they are an error.
   bool drop_nonfinite = false;
   /// Rows are left out whose value lies outside of [low, high] (see filter_rows), before anything else is
@@ -57,6 +61,8 @@ struct ReadOptions {
   double assumed_sigma_nm = 10;
   /// Factor on MINFLUX z for the refractive index mismatch; 1 keeps z as measured.
   double minflux_z_factor = 0.7;
+  /// Only where points are, not how well: for centres of picks and for structures. No key of a configuration.
+  bool positions_only = false;
 };
 
 /// One sentence per fault, each starting with its key; empty when the options can be used.

@@ -37,7 +37,7 @@ Handle access_properties() {
   return access;
 }
 
-// HDF5 1.10 crashes, or ends the program, where it gets no memory: what a step of writing needs is asked for
+// HDF5 1.10 crashes, or ends the program, where it gets no memory: what a step needs is asked for
 // beforehand, from those who say so.
 void require_memory() {
   constexpr std::size_t step_bytes = 16 << 20;  // caches, conversion and filters of one data set
@@ -112,6 +112,7 @@ bool File::is_hdf5(const std::string& path) {
 }
 
 File File::open(const std::string& path, const Limits& limits) {
+  require_memory();
   initialise();
   auto state = std::make_unique<State>();
   state->path = path;
@@ -150,7 +151,7 @@ void File::close() {
 }
 
 bool File::State::resolves(const std::string& object) const {
-  if (writable) require_memory();  // every step of writing begins here
+  require_memory();  // every step begins here
   if (object.empty() || object.front() != '/') fail_input(object, "is not an absolute path in the file");
   if (object == "/") return true;
   for (auto slash = object.find('/', 1);; slash = object.find('/', slash + 1)) {

@@ -125,19 +125,24 @@ void File::read_into(const std::string& dataset, Scalar scalar, void* out) const
 
 void File::read_member_into(const std::string& dataset, const std::string& member, Scalar scalar,
                             std::uint64_t first, std::uint64_t rows, void* out) const {
-  const Handle object = state_->open_dataset(dataset);
   const DatasetInfo described = state_->info(dataset);
   const Member* field = described.member(member);
   if (field == nullptr || !numeric(field->kind)) {
     state_->fail_input(dataset, "its field '" + member + "' does not hold numbers");
   }
-  // A memory type with this one field: HDF5 then picks it by name and converts whatever is stored.
   const hsize_t extent = field->elements;
   const Handle element(
       field->elements == 1 ? H5Tcopy(native_type(scalar)) : H5Tarray_create2(native_type(scalar), 1, &extent),
       H5Tclose);
-  const Handle memory(H5Tcreate(H5T_COMPOUND, size_of(scalar) * field->elements), H5Tclose);
-  H5Tinsert(memory.get(), member.c_str(), 0, element.get());
+  read_field(dataset, member, element.get(), first, rows, out);
+}
+
+void File::read_field(const std::string& dataset, const std::string& member, std::int64_t element_type,
+                      std::uint64_t first, std::uint64_t rows, void* out) const {
+  const Handle object = state_->open_dataset(dataset);
+  // A memory type with this one field: HDF5 then picks it by name and converts whatever is stored.
+  const Handle memory(H5Tcreate(H5T_COMPOUND, H5Tget_size(element_type)), H5Tclose);
+  H5Tinsert(memory.get(), member.c_str(), 0, element_type);
   const hsize_t start = first;
   const hsize_t count = rows;
   const Handle stored(H5Dget_space(object.get()), H5Sclose);
@@ -149,6 +154,24 @@ void File::read_member_into(const std::string& dataset, const std::string& membe
     state_->fail_input(dataset, "its field '" + member + "' cannot be read (truncated or damaged)",
                        "copy the file again");
   }
+}
+
+std::vector<std::string> File::read_member_strings(const std::string& dataset, const std::string& member,
+                                                   std::uint64_t first, std::uint64_t rows) const {
+  const Handle object = state_->open_dataset(dataset);
+  const DatasetInfo described = state_->info(dataset);
+  const Member* field = described.member(member);
+  if (field == nullptr || field->kind != Kind::text || field->elements != 1)
+    state_->fail_input(dataset, "its field '" + member + "' does not hold text");
+  const Handle type(H5Dget_type(object.get()), H5Tclose);
+  const int index = H5Tget_member_index(type.get(), member.c_str());
+  const Handle element(H5Tget_member_type(type.get(), static_cast<unsigned>(index)), H5Tclose);
+  if (H5Tis_variable_str(element.get()) != 0)
+    state_->fail_input(dataset, "its field '" + member + "' holds text of variable length",
+                       "write it with a fixed one");
+  checked_member_elements(dataset, member, first, rows, H5Tget_size(element.get()));
+  return read_text(element.get(), rows,
+                   [&](hid_t memory, void* out) { read_field(dataset, member, memory, first, rows, out); });
 }
 
 std::vector<std::string> File::read_strings(const std::string& dataset) const {

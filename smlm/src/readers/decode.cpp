@@ -98,7 +98,9 @@ LocalisationTable read_h5(const std::string& path, const ReadOptions& options) {
     if (!info.null && info.shape == h5::Shape{rows})
       arrays.push_back({{name, "", quantity}, file.read<double>(object)});
   }
-  return build_table(path, path + ":/data", std::move(arrays), options);
+  LocalisationTable table = build_table(path, path + ":/data", std::move(arrays), options);
+  if (unit == "px") table.keys_used.insert("pixel_size_nm");
+  return table;
 }
 
 // The comments are "DECODE EmitterSet", then one JSON object each for the version and for the units.
@@ -145,7 +147,10 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
   format.columns = [&path](const TextHeader& header, ReadOptions& effective) {
     return csv_columns(path, header, effective);
   };
-  return read_text_table(path, options, format);
+  LocalisationTable table = read_text_table(path, options, format);
+  if (units::length_of(table.position_unit_nm) == units::Length::pixel)
+    table.keys_used.insert("pixel_size_nm");
+  return table;
 }
 
 }  // namespace

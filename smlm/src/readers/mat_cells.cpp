@@ -170,6 +170,7 @@ LocalisationTable build_particle_table(const std::string& path, const std::vecto
   if (kind->first == 3) arrays.push_back({{"z", "", Quantity::z}, std::move(all.z)});
   if (kind->second) arrays.push_back({{"sigma_z", "", Quantity::sigma_z, spread}, std::move(all.axial)});
   LocalisationTable table = build_table(path, path, std::move(arrays), options);
+  table.keys_used.insert("sigma_kind");
   if (options.sigma_kind.empty()) {
     table.warnings.emplace_back(
         "files of this kind hold standard deviations or variances and do not say which: standard deviations "

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "smlm/number_text.hpp"
+
 namespace smlm::readers {
 namespace {
 
@@ -53,7 +55,8 @@ LocalisationTable build_minflux_table(const std::string& path, MinfluxRows rows,
   constexpr std::array position_names{"loc_x", "loc_y", "loc_z"};
   constexpr std::array sigma_names{"std_x in trace", "std_y in trace", "std_z in trace"};
   std::vector<ColumnArray> arrays;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  const std::size_t axes = rows.planar ? 2 : 3;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
     ColumnArray position{{position_names[axis], "nm", static_cast<Quantity>(axis)}, {}};
     for (const auto& location : rows.location_m) position.values.push_back(location[axis]);
     arrays.push_back(std::move(position));
@@ -75,6 +78,13 @@ LocalisationTable build_minflux_table(const std::string& path, MinfluxRows rows,
   LocalisationTable table = build_table(path, path, std::move(arrays), options, std::move(rows.row));
   if (rows.invalid > 0)
     table.rejected.push_back({"marked invalid (vld)", rows.invalid, 0, rows.first_invalid});
+  if (!table.planar) {
+    table.keys_used.insert("minflux_z_factor");
+    if (options.minflux_z_factor != 1)
+      table.warnings.push_back(
+          "MINFLUX z is multiplied by " + number_text(options.minflux_z_factor) +
+          " for the refractive index mismatch (input.minflux_z_factor; 1 keeps it as measured)");
+  }
   if (measured)
     table.warnings.push_back("MINFLUX files hold no uncertainty: the spread within each trace is taken");
   return table;

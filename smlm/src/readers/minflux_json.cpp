@@ -52,9 +52,12 @@ class Records {
     const json& measured = nested ? iterations->back() : record;
     const auto trace = number(record, "tid");
     const auto location = measured.is_object() ? measured.find("loc") : measured.end();
-    if (!trace || location == measured.end() || !location->is_array() || location->size() != 3) fail();
+    if (!trace || location == measured.end() || !location->is_array()) fail();
+    const std::size_t axes = location->size();
+    if ((axes != 2 && axes != 3) || (!rows_.row.empty() && rows_.planar != (axes == 2))) fail();
+    rows_.planar = axes == 2;
     std::array<double, 3> x{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < axes; ++axis) {
       if (!(*location)[axis].is_number()) fail();
       x[axis] = (*location)[axis].get<double>();
     }
@@ -89,9 +92,10 @@ class Records {
   }
 
   [[noreturn]] void fail() const {
-    throw Error(Fault::input, path_,
-                "record " + std::to_string(row_) + " has no tid or no loc of three numbers",
-                "is it a MINFLUX table?");
+    throw Error(
+        Fault::input, path_,
+        "record " + std::to_string(row_) + " has no tid or no loc of two or three numbers as in the others",
+        "is it a MINFLUX table?");
   }
 
   std::string path_;

@@ -1,5 +1,6 @@
 // MINFLUX (abberior) .mat, MATLAB 5: the variables tid, vld, tim, ... (1 x N) and the struct itr, whose
-// fields are N x iterations, loc N x iterations x 3. The last iteration is the final one.
+// fields are N x iterations, loc N x iterations x 3 (2 of measurements in the plane). The last iteration is
+// the final one.
 #include <algorithm>
 
 #include "../mat_v5.hpp"
@@ -25,9 +26,10 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
       std::count(names.begin(), names.end(), "vld") == 1 ? read_mat_v5(path, "vld") : MatValue();
   const MatValue& location = iterations.field("loc");
   const std::size_t n = trace.numbers.size();
-  const bool cube =
-      location.dims.size() == 3 && location.dims[0] == n && location.dims[1] > 0 && location.dims[2] == 3;
-  const bool flat = location.dims.size() == 2 && location.dims[0] == n && location.dims[1] == 3;
+  const std::size_t axes = location.dims.empty() ? 0 : location.dims.back();
+  const bool fits = location.dims.size() > 1 && location.dims[0] == n && (axes == 2 || axes == 3);
+  const bool cube = fits && location.dims.size() == 3 && location.dims[1] > 0;
+  const bool flat = fits && location.dims.size() == 2;
   if (location.kind != MatValue::Kind::numbers || (!cube && !flat)) {
     throw Error(Fault::input, path, "is not a MINFLUX table: itr.loc does not fit tid", "export it as .npy");
   }
@@ -36,6 +38,7 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
   const std::size_t last = n * (count - 1);
 
   MinfluxRows rows;
+  rows.planar = axes == 2;
   std::vector<const MatValue*> kept;
   for (const auto& [name, field] : iterations.fields) {
     if (field.kind != MatValue::Kind::numbers || field.numbers.size() != n * count) continue;
@@ -48,7 +51,7 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
       continue;
     }
     std::array<double, 3> x{};
-    for (std::size_t axis = 0; axis < 3; ++axis) x[axis] = location.numbers[axis * axis_stride + last + i];
+    for (std::size_t axis = 0; axis < axes; ++axis) x[axis] = location.numbers[axis * axis_stride + last + i];
     rows.location_m.push_back(x);
     rows.trace.push_back(trace.numbers[i]);
     rows.row.push_back(i + 1);

@@ -41,7 +41,8 @@ Layout layout_of(const std::string& path, const NpyHeader& header) {
                 {}};
   const std::size_t axes = nested != nullptr ? 2 : 1;
   if (layout.location == nullptr || layout.trace == nullptr || layout.location->shape.size() != axes ||
-      layout.location->shape.back() != 3 || layout.location->count() == 0 || layout.trace->count() != 1) {
+      (layout.location->shape.back() != 3 && layout.location->shape.back() != 2) ||
+      layout.location->count() == 0 || layout.trace->count() != 1) {
     throw Error(Fault::input, path, "is not a MINFLUX table: it has no loc and tid",
                 "export the table as CSV with a header");
   }
@@ -69,8 +70,10 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
   const Layout layout = layout_of(path, header);
   const Slot location = final_iteration(*layout.location);
   const std::size_t axis_stride = layout.location->strides.back();
+  const auto axes = static_cast<std::size_t>(layout.location->shape.back());
 
   MinfluxRows rows;
+  rows.planar = axes == 2;
   for (const Slot& slot : layout.extra) {
     const bool nested = slot.field->name.rfind("itr/", 0) == 0;
     rows.extra.push_back({{nested ? slot.field->name.substr(4) : slot.field->name, "", Quantity::other}, {}});
@@ -92,7 +95,7 @@ LocalisationTable read(const std::string& path, const ReadOptions& options) {
         continue;
       }
       std::array<double, 3> x{};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t axis = 0; axis < axes; ++axis) {
         x[axis] = npy_value(*layout.location, record, location.offset + axis * axis_stride);
       }
       rows.location_m.push_back(x);

@@ -48,7 +48,11 @@ ReadOptions with_picasso_pixel_size(const std::string& path, const ReadOptions& 
   return effective;
 }
 
-void warn_about_lpz(LocalisationTable& table) {
+void judge_lpz(LocalisationTable& table, const std::vector<SourceColumn>& columns) {
+  const bool has_lpz = std::any_of(columns.begin(), columns.end(), [](const SourceColumn& c) {
+    return c.quantity == Quantity::sigma_z && c.name == "lpz";
+  });
+  if (has_lpz) table.keys_used.insert("lpz_unit");
   if (table.planar || table.axial_sigma_assumed || table.size() == 0) return;
   std::vector<float> variances;
   variances.reserve(table.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "../column_plan.hpp"
 #include "smlm/localisation_table.hpp"
@@ -16,7 +17,8 @@ SourceColumn picasso_column(const std::string& name, const ReadOptions& options)
 /// either.
 ReadOptions with_picasso_pixel_size(const std::string& path, const ReadOptions& options);
 
-/// Warns when lpz was read as nm and its median is so small that it looks like pixels.
-void warn_about_lpz(LocalisationTable& table);
+/// Notes that options.lpz_unit had a say, and warns when lpz was read as nm and its median is so small that
+/// it looks like pixels.
+void judge_lpz(LocalisationTable& table, const std::vector<SourceColumn>& columns);
 
 }  // namespace smlm::readers

@@ -1,8 +1,11 @@
 #include "header.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <optional>
 
+#include "../missing.hpp"
+#include "number.hpp"
+#include "smlm/column.hpp"
 #include "smlm/error.hpp"
 
 namespace smlm {
@@ -10,6 +13,8 @@ namespace {
 
 constexpr std::size_t most_columns = 4096;
 constexpr std::size_t most_comments = 1000;
+constexpr std::size_t most_before_header = 100;
+constexpr std::size_t most_rows_of_words = 4;
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 constexpr std::string_view utf16_marks[] = {"\xFF\xFE", "\xFE\xFF"};
 
@@ -35,57 +40,191 @@ char find_delimiter(std::string_view line) {
   return most == tabs ? '\t' : most == semicolons ? ';' : ',';
 }
 
-bool is_number(const std::string& cell) {
+bool is_number(const std::string& cell, char delimiter) {
   double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc() && end == cell.data() + cell.size();
+  return parse_number(cell, value) || (delimiter != ',' && parse_decimal_comma(cell));
+}
+
+bool is_comment(std::string_view content) { return content.front() == '#' || content.front() == '%'; }
+
+// A line as cells, at the delimiter that makes sense of it.
+struct Cells {
+  char delimiter = ',';
+  std::vector<std::string> cells;
+
+  bool all_numbers() const {
+    return is_number(cells.front(), delimiter) &&
+           std::all_of(cells.begin(), cells.end(),
+                       [&](const std::string& c) { return c.empty() || is_number(c, delimiter); });
+  }
+  // Neither a number nor nothing at all: names, or units.
+  bool all_words() const {
+    return std::none_of(cells.begin(), cells.end(),
+                        [&](const std::string& c) { return is_number(c, delimiter); }) &&
+           std::any_of(cells.begin(), cells.end(), [](const std::string& c) { return !is_missing(c); });
+  }
+  bool names(Quantity quantity) const {
+    return std::any_of(cells.begin(), cells.end(), [&](const std::string& cell) {
+      const auto match = match_heading(parse_heading(cell));
+      return match && match->quantity == quantity;
+    });
+  }
+  bool names_positions() const { return cells.size() > 1 && names(Quantity::x) && names(Quantity::y); }
+};
+
+Cells cells_of(std::string_view line, char delimiter) { return {delimiter, split_cells(line, delimiter)}; }
+
+Cells cells_of(std::string_view line) {
+  for (const char delimiter : {'\t', ';'}) {  // decimal commas outnumber what separates them
+    Cells found = cells_of(line, delimiter);
+    if (found.cells.size() > 1 && found.all_numbers()) return found;
+  }
+  Cells found = cells_of(line, find_delimiter(line));
+  if (found.cells.size() == 1 && line.find('"') != std::string_view::npos) {
+    // Some spreadsheets quote the whole line once more.
+    const std::string unquoted = found.cells.front();
+    found = cells_of(unquoted, find_delimiter(unquoted));
+  }
+  return found;
+}
+
+// "sep=;", which a spreadsheet writes for itself.
+std::optional<char> stated_separator(std::string_view content) {
+  if (content.size() >= 2 && content.front() == '"' && content.back() == '"')
+    content = content.substr(1, content.size() - 2);
+  if (content.size() == 5 && (content.substr(0, 4) == "sep=" || content.substr(0, 4) == "SEP="))
+    return content[4];
+  return std::nullopt;
 }
 
 // `next(line)` as LineReader::next; `number()` the line just read.
 template <class Next, class Number>
-TextHeader parse_header(const Next& next, const Number& number, const std::string& path) {
-  TextHeader header;
-  std::string_view line;
-  bool first = true;
-  while (next(line)) {
-    if (first) {
-      for (const std::string_view mark : utf16_marks) {
-        if (line.substr(0, 2) == mark) throw Error(Fault::input, path, "is UTF-16 text", "save it as UTF-8");
+class HeaderParser {
+ public:
+  HeaderParser(const Next& next, const Number& number, const std::string& path)
+      : next_(next), number_(number), path_(path) {}
+
+  TextHeader parse() {
+    std::vector<PendingLine> looked;  // lines of content until one names x and y
+    std::size_t at = 0;
+    bool found = false;
+    for (PendingLine line; looked.size() < most_before_header && content_line(line);) {
+      looked.push_back(line);
+      const Cells cells = separated(line.text);
+      if (cells.cells.size() > most_columns) {
+        throw Error(Fault::input, path_ + ":" + std::to_string(line.number), "has more than 4096 columns",
+                    "is this a table of localisations?");
       }
-      if (line.substr(0, 3) == byte_order_mark) line.remove_prefix(3);
-      first = false;
+      found = cells.names_positions();
+      at = looked.size() - 1;
+      // Data on the first line, or right behind it: there is nothing to look for.
+      if (found || (cells.cells.size() > 1 && cells.all_numbers())) break;
     }
-    const std::string_view content = without_blanks(line);
-    if (content.empty()) continue;
-    if (content.front() == '#') {
-      if (header.comments.size() < most_comments) header.comments.emplace_back(content.substr(1));
-      continue;
+    if (looked.empty()) {
+      throw Error(Fault::input, path_, "holds no table: it ends before any header",
+                  "check that it was written completely");
     }
-    header.delimiter = find_delimiter(line);
-    header.cells = split_cells(line, header.delimiter);
-    if (header.cells.size() == 1 && line.find('"') != std::string_view::npos) {
-      // Some spreadsheets quote the whole line once more.
-      const std::string unquoted = header.cells.front();
-      header.delimiter = find_delimiter(unquoted);
-      header.cells = split_cells(unquoted, header.delimiter);
+    if (!found) at = 0;
+    if (at > 0) {
+      header_.warnings.push_back(std::to_string(at) + (at == 1 ? " line" : " lines") +
+                                 " before the header skipped, the first '" +
+                                 looked.front().text.substr(0, 40) + "'");
     }
-    if (header.cells.size() > most_columns) {
-      throw Error(Fault::input, path + ":" + std::to_string(number()), "has more than 4096 columns",
-                  "is this a table of localisations?");
+    const Cells cells = separated(looked[at].text);
+    header_.delimiter = cells.delimiter;
+    header_.cells = cells.cells;
+    header_.pending.assign(looked.begin() + static_cast<std::ptrdiff_t>(at + (cells.all_numbers() ? 0 : 1)),
+                           looked.end());
+    if (cells.all_numbers()) {
+      name_columns_of_numbers();
+    } else {
+      header_.line = looked[at].text;
+      take_rows_of_words();
     }
-    if (is_number(header.cells.front()) &&
-        std::all_of(header.cells.begin(), header.cells.end(),
-                    [](const std::string& c) { return c.empty() || is_number(c); })) {
-      header.present = false;
-      header.first_row = std::string(line);
-      header.first_row_line = number();
-      for (std::size_t i = 0; i < header.cells.size(); ++i) header.cells[i] = std::to_string(i + 1);
-    }
-    return header;
+    return std::move(header_);
   }
-  throw Error(Fault::input, path, "holds no table: it ends before any header",
-              "check that it was written completely");
-}
+
+ private:
+  Cells separated(std::string_view line) const {
+    return separator_ ? cells_of(line, *separator_) : cells_of(line);
+  }
+
+  // The next line that is neither blank nor a comment.
+  bool content_line(PendingLine& found) {
+    std::string_view line;
+    while (next_(line)) {
+      if (first_) {
+        for (const std::string_view mark : utf16_marks) {
+          if (line.substr(0, 2) == mark)
+            throw Error(Fault::input, path_, "is UTF-16 text", "save it as UTF-8");
+        }
+        if (line.substr(0, 3) == byte_order_mark) line.remove_prefix(3);
+      }
+      const std::string_view content = without_blanks(line);
+      const auto separator = first_ ? stated_separator(content) : std::nullopt;
+      first_ = false;
+      if (content.empty()) continue;
+      if (separator) {
+        separator_ = *separator == ',' || *separator == ';' || *separator == '\t' ? separator : std::nullopt;
+        continue;
+      }
+      if (is_comment(content)) {
+        if (header_.comments.size() < most_comments) header_.comments.emplace_back(content.substr(1));
+        continue;
+      }
+      found = {number_(), std::string(line)};
+      return true;
+    }
+    return false;
+  }
+
+  // A comment with as many cells, x and y among them, is the header; else columns are numbered.
+  void name_columns_of_numbers() {
+    const std::size_t columns = header_.cells.size();
+    for (auto comment = header_.comments.rbegin(); comment != header_.comments.rend(); ++comment) {
+      for (const Cells& cells : {cells_of(*comment, header_.delimiter), cells_of(*comment)}) {
+        if (cells.cells.size() != columns || !cells.names_positions()) continue;
+        header_.cells = cells.cells;
+        return;
+      }
+    }
+    header_.present = false;
+    for (std::size_t i = 0; i < columns; ++i) header_.cells[i] = std::to_string(i + 1);
+  }
+
+  // Behind the header: the same names for people, or a row of units.
+  void take_rows_of_words() {
+    for (std::size_t taken = 0; taken < most_rows_of_words; ++taken) {
+      if (header_.pending.empty()) {
+        PendingLine line;
+        if (!content_line(line)) return;
+        header_.pending.push_back(std::move(line));
+      }
+      const Cells row = cells_of(header_.pending.front().text, header_.delimiter);
+      if (row.cells.size() != header_.cells.size() || !row.all_words()) return;
+      bool units_row = false;
+      for (const std::string& cell : row.cells) units_row = units_row || units::parse_length(cell);
+      if (!units_row && row.cells != header_.cells && !row.names_positions()) return;
+      header_.warnings.push_back("line " + std::to_string(header_.pending.front().number) +
+                                 (units_row ? " gives the units" : " repeats the names") + " of the columns");
+      for (std::size_t i = 0; units_row && i < row.cells.size(); ++i) {
+        std::string unit = row.cells[i];
+        if (unit.size() > 2 && (unit.front() == '(' || unit.front() == '['))
+          unit = unit.substr(1, unit.size() - 2);
+        if (!unit.empty() && parse_heading(header_.cells[i]).unit.empty())
+          header_.cells[i] += " [" + unit + "]";
+      }
+      header_.pending.erase(header_.pending.begin());
+    }
+  }
+
+  const Next& next_;
+  const Number& number_;
+  const std::string& path_;
+  TextHeader header_;
+  std::optional<char> separator_;
+  bool first_ = true;
+};
 
 }  // namespace
 
@@ -119,8 +258,9 @@ std::vector<std::string> split_cells(std::string_view line, char delimiter) {
 }
 
 TextHeader read_header(LineReader& lines, const std::string& path) {
-  return parse_header([&](std::string_view& line) { return lines.next(line); },
-                      [&] { return lines.number(); }, path);
+  const auto next = [&](std::string_view& line) { return lines.next(line); };
+  const auto number = [&] { return lines.number(); };
+  return HeaderParser(next, number, path).parse();
 }
 
 TextHeader header_of(std::string_view beginning) {
@@ -135,8 +275,8 @@ TextHeader header_of(std::string_view beginning) {
     ++number;
     return true;
   };
-  return parse_header(
-      next, [&] { return number; }, "");
+  const auto line_number = [&] { return number; };
+  return HeaderParser(next, line_number, std::string()).parse();
 }
 
 }  // namespace smlm

@@ -30,6 +30,9 @@ struct Role {
   std::string_view unit = {};  // where the header does not say
 };
 
+/// What the registry of aliases makes of the header's cells.
+std::vector<SourceColumn> columns_by_alias(const TextHeader& header);
+
 /// Columns whose header cell has a role get it; all others are only kept.
 std::vector<SourceColumn> columns_by_role(const std::vector<std::string>& cells,
                                           const std::vector<Role>& roles);
@@ -38,9 +41,10 @@ std::vector<SourceColumn> columns_by_role(const std::vector<std::string>& cells,
 std::vector<SourceColumn> nm_columns_by_role(const std::vector<std::string>& cells,
                                              const std::vector<Role>& roles);
 
-/// Parses strictly: every line has as many fields as the header, every field is a number as a whole, or a
-/// word in columns whose first row is a word. Errors are Error(input) at file:line:field. Numbers obey no
-/// locale. Empty fields are NaN, which columns that are used do not accept.
+/// Parses strictly: every line has as many fields as the header; in columns that are used every field is a
+/// number as a whole (with a decimal comma where commas do not separate fields) or says that there is none; a
+/// column that is only kept becomes one of text where a row has a word in it. Errors are Error(input) at
+/// file:line:field. Numbers obey no locale.
 LocalisationTable read_text_table(const std::string& path, const ReadOptions& options,
                                   const TextFormat& format = {});
 

@@ -103,6 +103,21 @@ class Builder : public YAML::EventHandler {
 };
 }  // namespace
 
+namespace {
+// What a line that is no YAML most likely has in it.
+std::string remedy_for(const std::string& text, int line) {
+  std::istringstream in(text);
+  std::string content;
+  for (int i = 0; i <= line && std::getline(in, content); ++i) {
+  }
+  const auto first = content.find_first_not_of(" \t");
+  if (first != std::string::npos && content.find('\t') < first) return "a tab: YAML is indented with blanks";
+  if (content.find('"') != std::string::npos && content.find('\\') != std::string::npos)
+    return "a backslash in double quotes: separate folders by /, or write the path in single quotes";
+  return {};
+}
+}  // namespace
+
 Node* Node::find(const std::string& key) {
   for (auto& [name, value] : entries)
     if (name == key) return &value;
@@ -119,7 +134,7 @@ Node parse_yaml(const std::string& text, const std::string& where) {
     if (parser.HandleNextDocument(second))
       fail(where, second.root.line, "a second YAML document", "keep one");
   } catch (const YAML::Exception& e) {
-    fail(where, e.mark.line + 1, "not valid YAML: " + e.msg);
+    fail(where, e.mark.line + 1, "not valid YAML: " + e.msg, remedy_for(text, e.mark.line));
   }
   return builder.root;
 }

@@ -1,11 +1,10 @@
 #include "paths.hpp"
 
-#include <glob.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <set>
 
+#include "glob.hpp"
 #include "smlm/error.hpp"
 
 namespace polar::pipeline {
@@ -25,24 +24,33 @@ std::string resolve_path(const std::string& path, const std::string& folder) {
   return (p.is_absolute() ? p : std::filesystem::path(folder) / p).lexically_normal().string();
 }
 
-std::vector<std::string> matching_paths(const std::string& pattern) {
-  std::error_code ec;
-  if (std::filesystem::exists(pattern, ec)) return {pattern};  // a name with brackets is still a name
-  std::vector<std::string> paths;
-  glob_t found{};
-  const int status = ::glob(pattern.c_str(), 0, nullptr, &found);
-  for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
-  ::globfree(&found);
-  return paths;
+namespace {
+[[noreturn]] void refuse_missing(const std::string& pattern, const std::string& path) {
+  // In double quotes YAML makes a tab of the letters \\t.
+  const bool windows = pattern.find_first_of("\\\t") != std::string::npos;
+  const bool variable = pattern.find('$') != std::string::npos;
+  const bool braces = pattern.find('{') != std::string::npos;
+  const std::vector<std::string> other_case = matching_but_for_case(path);
+  throw smlm::Error(
+      smlm::Fault::input, path, "no such file",
+      windows    ? "folders are separated by / (\\ is a letter of a name, and in double quotes \\t is a tab)"
+      : variable ? "variables are not replaced: write the path, or ~ for your home"
+      : braces   ? "braces are no pattern: list the files, or use *"
+      : !other_case.empty() ? "but for upper and lower case there is '" + other_case.front() + "'"
+                            : "correct input.files");
 }
+}  // namespace
 
-std::vector<std::string> expand_files(const std::vector<std::string>& patterns, const std::string& folder) {
+std::vector<std::string> expand_files(const std::vector<std::string>& patterns, const std::string& folder,
+                                      std::vector<MatchedPattern>* matched) {
   std::vector<std::string> files;
   for (const std::string& pattern : patterns) {
     const std::string path = resolve_path(pattern, folder);
     const std::vector<std::string> found = matching_paths(path);
-    if (found.empty()) throw smlm::Error(smlm::Fault::input, path, "no such file", "correct input.files");
+    if (found.empty()) refuse_missing(pattern, path);
     files.insert(files.end(), found.begin(), found.end());
+    if (matched && pattern.find_first_of("*?[") != std::string::npos)
+      matched->push_back({pattern, found.size(), matching_but_for_case(path)});
   }
   std::set<std::string> seen;
   for (const std::string& file : files)

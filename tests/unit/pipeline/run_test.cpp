@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "polar/core/sha256.hpp"
 #include "polar/pipeline/simulate_run.hpp"
 #include "polar/results/compare.hpp"
 #include "polar/results/pose_table.hpp"
@@ -67,7 +68,7 @@ class Run : public ::testing::Test {
 TEST_F(Run, WritesACompleteDirectory) {
   ASSERT_EQ(fault({}), 0);
   for (const char* name : {"poses.csv", "results.h5", "aligned.hdf", "template.hdf", "aligned.csv",
-                           "preview.png", "summary.json"})
+                           "preview.png", "report.html", "summary.json"})
     EXPECT_TRUE(std::filesystem::is_regular_file(out(name))) << name;
   EXPECT_FALSE(std::filesystem::exists(out(".polar.lock")));
   const std::vector<PoseRow> poses = read_pose_table(out("poses.csv"));
@@ -116,6 +117,22 @@ TEST_F(Run, ResolutionOfHalvesIsRecordedAndPartOfTheComputation) {
   EXPECT_TRUE(file.exists("/resolution/noise"));
   write_config("input: {files: data/localisations.csv}\noutput: {resolution: thirds}\n");
   EXPECT_THROW(config(), smlm::Error);
+}
+
+TEST_F(Run, ThePageIsMadeWhateverElseIsAskedForAndTheRecordSaysWhereItComesFrom) {
+  write_config("input: {files: data/localisations.csv}\noutput: {formats: [csv]}\n");
+  RunFlags flags;
+  flags.command = "polar run run.yaml";
+  ASSERT_EQ(fault(flags), 0);
+  EXPECT_FALSE(std::filesystem::exists(out("results.h5")));
+  const std::string page = content(out("report.html"));
+  EXPECT_THAT(page, HasSubstr("polar run run.yaml"));
+  EXPECT_THAT(page, HasSubstr("<title>results - polar</title>"));
+  const std::string table = content(directory_.path("data/localisations.csv"));
+  EXPECT_THAT(page, HasSubstr(sha256(table.data(), table.size())));
+  write_config("input: {files: data/localisations.csv}\noutput: {report: false}\n");
+  ASSERT_EQ(fault({true, false}), 0);
+  EXPECT_FALSE(std::filesystem::exists(out("report.html")));
 }
 
 TEST_F(Run, NamesTheWeightsThatTookPartAndNoOthers) {
@@ -181,7 +198,7 @@ TEST_F(Run, CancelledRunsWriteNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(out()));
 }
 
-TEST_F(Run, NothingRegisteredIsNumericalAndWritesNothing) {
+TEST_F(Run, NothingRegisteredIsNumericalAndLeavesItsAccount) {
   const Engine none = [](const Views& views, const RegistrationOptions& o, Progress& p, Checkpoint& c) {
     Registration r = stay(views, o, p, c);
     for (RegisteredView& v : r.view) {
@@ -192,6 +209,16 @@ TEST_F(Run, NothingRegisteredIsNumericalAndWritesNothing) {
   };
   EXPECT_EQ(fault({}, none), 5);
   EXPECT_THAT(message_, HasSubstr("too few localisations"));
+  EXPECT_THAT(content(out("report.html")), HasSubstr("No structure found"));
+  EXPECT_FALSE(std::filesystem::exists(out("summary.json")));  // not a result
+  EXPECT_EQ(fault({}, none), 5);                               // and not in the way
+  EXPECT_EQ(fault({}), 0);
+  EXPECT_EQ(fault({}, none), 4);  // of a result that is complete
+  EXPECT_EQ(fault({true, false}, none), 5);
+  EXPECT_FALSE(std::filesystem::exists(out("aligned.csv")));  // nothing of the earlier one beside it
+  std::filesystem::remove_all(out());
+  write_config("input: {files: data/localisations.csv}\noutput: {report: false}\n");
+  EXPECT_EQ(fault({}, none), 5);
   EXPECT_TRUE(std::filesystem::is_empty(out()));
 }
 

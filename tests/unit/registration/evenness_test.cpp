@@ -1,4 +1,4 @@
-#include "registration/evenness.hpp"
+#include "registration/data/evenness.hpp"
 
 #include <gtest/gtest.h>
 

@@ -36,7 +36,7 @@ class StructureFiles : public ::testing::Test {
 };
 
 TEST_F(StructureFiles, TextIsCentredAndScaled) {
-  StructureFile file = write("square.csv", "x,y,z\n0,0,5\n2,0,5\n2;2;5\r\n0 2 5");
+  StructureFile file = write("square.csv", "0,0,5\n2,0,5\n2;2;5\r\n0 2 5");
   const Structure as_is = read_structure(file);
   EXPECT_EQ(as_is.name, "square");
   EXPECT_LT((as_is.site_nm.col(0) - Eigen::Vector3d(-1, -1, 0)).norm(), 1e-12);

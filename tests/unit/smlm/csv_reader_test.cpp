@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
+using ::testing::FloatEq;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -67,7 +68,7 @@ TEST_F(CsvReader, DialectsGiveTheSameTable) {
                                           "# a comment\n\n#another\n" + std::string(plain) + "\n\n",
                                           whole_header_quoted,
                                           "\"particle\",\"x_nm\",\"y_nm\",\"z_nm\",\"sigma_xy_nm\",\"sigma_z_"
-                                          "nm\"\n\"7\",\"1\", 2 ,3,.5,1e0\n8.0,4,5,6,2,3\n"};
+                                          "nm\"\n\"7\",\"1\", 2 ,3,.5,1e0\n8,4,5,6,2,3\n"};
   for (const std::string& text : dialects) {
     const LocalisationTable table = read(text);
     EXPECT_EQ(table.position_nm, expected.position_nm) << text;
@@ -161,7 +162,11 @@ TEST_F(CsvReader, FullCovariances) {
   const Error error = refused("x_nm,y_nm,z_nm,sigma_xx,sigma_xy,sigma_yy,sigma_zz\n0,0,0,4,6,5,9\n");
   EXPECT_EQ(error.fault(), Fault::input);
   EXPECT_THAT(error.what(), HasSubstr("t.csv:2:4: covariance is not positive definite"));
-  EXPECT_THAT(refused("x_nm,y_nm,z_nm,sigma_xx,sigma_yy\n0,0,0,4,6\n").what(), HasSubstr("sigma_zz"));
+  const LocalisationTable lateral = read("x_nm,y_nm,z_nm,sigma_xx,sigma_yy\n0,0,0,4,6\n0,0,1,4,6\n");
+  EXPECT_TRUE(lateral.axial_sigma_assumed);
+  EXPECT_THAT(lateral.covariance_nm2[0], ElementsAre(4.F, 0.F, 0.F, FloatEq(6.F), 0.F, FloatEq(20.F)));
+  EXPECT_THAT(refused("x_nm,y_nm,z_nm,sigma_xx,sigma_xz,sigma_yy\n0,0,0,4,1,6\n").what(),
+              HasSubstr("sigma_zz"));
 }
 
 TEST_F(CsvReader, AmbiguousHeadersAreRefusedWithTheCandidates) {
@@ -183,8 +188,9 @@ TEST_F(CsvReader, ErrorsNameLineAndField) {
     EXPECT_THAT(refused(head + "1," + bad + ",3,4\n").what(),
                 HasSubstr("t.csv:4:2: '" + std::string(bad) + "'"));
   }
-  EXPECT_THAT(refused("x_nm;y_nm\n1,5;2\n").what(), HasSubstr("t.csv:2:1: '1,5' has a decimal comma"));
-  EXPECT_THAT(refused(head + "1,,3,4\n").what(), HasSubstr("t.csv:4:2: the field is empty"));
+  EXPECT_THAT(refused(head + "1,\"1,234.5\",3,4\n").what(),
+              HasSubstr("t.csv:4:2: '1,234.5' has a separator"));
+  EXPECT_THAT(refused(head + "1,,3,4\n").what(), HasSubstr("t.csv:4:2: position is not finite"));
   EXPECT_THAT(refused(head + "nan,2,3,4\n").what(), HasSubstr("t.csv:4:1: position is not finite"));
   EXPECT_THAT(refused(head + "nan(0x1),2,3,4\n").what(), HasSubstr("t.csv:4:1: position is not finite"));
   EXPECT_THAT(refused(head + "1e308,2,3,4\n").what(), HasSubstr("t.csv:4:1: position is out of range"));
@@ -225,8 +231,12 @@ TEST_F(CsvReader, EveryOtherColumnIsKept) {
 }
 
 TEST_F(CsvReader, ParticlesMayBeNumbersOrNames) {
-  EXPECT_THAT(read("x,y,particle\n1,2,a b\n1,2,10\n1,2,10.0\n1,2,\n1,2,-1\n").particle,
-              ElementsAre(0, 1, 1, -1, -1));
+  const LocalisationTable named =
+      read("x,y,particle\n1,2,a b\n1,2,10\n1,2,10.0\n1,2,\n1,2,-1\n1,2,-0.5\n1,2,NA\n");
+  EXPECT_THAT(named.particle, ElementsAre(0, 1, 2, -1, -1, -1, -1));
+  EXPECT_THAT(named.particle_names, ElementsAre("a b", "10", "10.0")) << "ids are text";
+  EXPECT_THAT(read("x,y,particle\n1,2,1.000e+00\n1,2,2.000e+01\n").particle_names, ElementsAre("1", "20"))
+      << "whole numbers are written as whole numbers";
   EXPECT_THAT(read("x,y,sitenumbers\n1,2,0\n1,2,1\n").particle, ElementsAre(-1, 0))
       << "SMAP: site 0 is no site";
   EXPECT_THAT(read("x,y,particle\n1,2,0\n1,2,1\n").particle, ElementsAre(0, 1));
@@ -244,6 +254,43 @@ TEST_F(CsvReader, ConstantZIsPlanar) {
   const LocalisationTable table = read("x_nm,y_nm,z_nm,sigma_xy\n1,2,50,1\n3,4,50,1\n");
   EXPECT_TRUE(table.planar);
   EXPECT_EQ(table.position_nm[0][2], 0);
+}
+
+TEST_F(CsvReader, DecimalCommasWhereTheySeparateNothing) {
+  for (const char* text :
+       {"x_nm;y_nm\n1,5;2\n", "x_nm\ty_nm\n1,5\t2\n", "x_nm,y_nm\n\"1,5\",2\n", "sep=;\nx_nm;y_nm\n1,5;2\n"})
+    EXPECT_THAT(read(text).position_nm[0], ElementsAre(1.5, 2, 0)) << text;
+  EXPECT_THAT(refused("x_nm;y_nm\n1,5;2.5\n").what(), HasSubstr("with points and with commas"));
+}
+
+TEST_F(CsvReader, FieldsInQuotesMayHoldAnything) {
+  const LocalisationTable table = read("x_nm,y_nm,particle\n1,2,\"a \"\"b\"\", c\"\n1,2,\" d\"\n");
+  EXPECT_THAT(table.particle_names, ElementsAre("a \"b\", c", " d"));
+}
+
+TEST_F(CsvReader, RowsWithoutDepthAreJudgedAtTheEnd) {
+  std::string flat = "x_nm,y_nm,z_nm,sigma_xy,sigma_z\n", deep = flat, one_off = flat;
+  for (int i = 0; i < 200; ++i) {
+    flat += "1,2,,1,inf\n";
+    deep += "1,2," + std::to_string(i) + ",1,2\n";
+    one_off += i == 7 ? "1,2,12,1,2\n" : "1,2,0,1,2\n";
+  }
+  EXPECT_TRUE(read(flat).planar);
+  EXPECT_TRUE(read(one_off).planar);
+  EXPECT_FALSE(read(deep).planar);
+  EXPECT_THAT(refused(deep + "1,2,,1,2\n" + "1,2,1,1,0\n").what(),
+              HasSubstr("t.csv:202:3: position is not finite"));
+  ReadOptions drop;
+  drop.drop_nonfinite = true;
+  const LocalisationTable table = read(deep + "1,2,,1,2\n" + "1,2,1,1,0\n1,2,201,1,2\n", drop);
+  EXPECT_EQ(table.size(), 201u);
+  EXPECT_EQ(table.source_row.back(), 203u);
+  ASSERT_EQ(table.rejected.size(), 2u);
+  EXPECT_EQ(table.rejected[1].reason, "uncertainty is not positive");
+  EXPECT_EQ(table.rejected[1].first_row, 202u);
+  ReadOptions planar;
+  planar.planar = true;
+  EXPECT_TRUE(read(deep, planar).planar);
 }
 
 TEST_F(CsvReader, HopelessFilesFailFast) {

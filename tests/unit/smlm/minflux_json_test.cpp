@@ -53,6 +53,14 @@ TEST_F(MinfluxJson, NewerFilesMarkTheFinalIteration) {
   EXPECT_EQ(t.source_row, (std::vector<std::uint64_t>{2, 3}));
 }
 
+TEST_F(MinfluxJson, MeasurementsInThePlaneHaveTwoNumbers) {
+  const LocalisationTable t =
+      read_table(write("a.json", R"([{"tid":1,"loc":[1e-9,2e-9]},{"tid":1,"loc":[3e-9,2e-9]}])"), {});
+  EXPECT_TRUE(t.planar);
+  EXPECT_NEAR(t.position_nm[1][0], 3, 1e-9);
+  EXPECT_THAT(t.warnings, ::testing::Not(::testing::Contains(HasSubstr("minflux_z_factor"))));
+}
+
 TEST_F(MinfluxJson, WhatIsNoTableIsRefusedWithAReason) {
   const auto refused = [&](const std::string& text, const char* part) {
     ReadOptions options;
@@ -60,7 +68,9 @@ TEST_F(MinfluxJson, WhatIsNoTableIsRefusedWithAReason) {
     const std::string file = write("a.json", text);
     EXPECT_THAT(test::error_of([&] { read_table(file, options); }).what(), HasSubstr(part));
   };
-  refused(R"([{"tid":1,"loc":[1,2]}])", "record 1 has no tid or no loc of three numbers");
+  refused(R"([{"tid":1,"loc":[1]}])", "record 1 has no tid or no loc of two or three numbers");
+  refused(R"([{"tid":1,"loc":[1,2]},{"tid":1,"loc":[1,2,3]}])",
+          "record 2 has no tid or no loc of two or three");
   refused(R"([{"tid":1,"loc":[1,2,"a"]}])", "record 1");
   refused(R"([{"loc":[1,2,3]}])", "record 1");
   refused(R"([{"tid":1,"loc":[1,2,3]},)", "is not JSON");

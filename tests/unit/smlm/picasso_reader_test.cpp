@@ -53,6 +53,42 @@ TEST_F(PicassoReader, PixelsBecomeNanometresAndGroupsParticles) {
   }
 }
 
+TEST_F(PicassoReader, IdsAreWholeNumbersOfAnySizeOrText) {
+  struct Row {
+    double x, y;
+    std::int64_t group;
+    char name[4];
+  };
+  const std::array<Row, 3> rows{
+      {{1, 2, 9912140633506421, "007"}, {3, 4, 9912140633506422, "b 1"}, {5, 6, -1, "nan"}}};
+  const auto make_table = [&](const char* file, bool text) {
+    const hid_t word = H5Tcopy(H5T_C_S1);
+    H5Tset_size(word, sizeof(Row::name));
+    const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof(Row));
+    H5Tinsert(type, "x", offsetof(Row, x), H5T_NATIVE_DOUBLE);
+    H5Tinsert(type, "y", offsetof(Row, y), H5T_NATIVE_DOUBLE);
+    H5Tinsert(type, "group", text ? offsetof(Row, name) : offsetof(Row, group),
+              text ? word : H5T_NATIVE_INT64);
+    const hid_t h5 = H5Fcreate(path(file).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hsize_t size = rows.size();
+    const hid_t space = H5Screate_simple(1, &size, nullptr);
+    const hid_t locs = H5Dcreate2(h5, "/locs", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(locs, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data());
+    H5Dclose(locs);
+    H5Sclose(space);
+    H5Fclose(h5);
+    H5Tclose(type);
+    H5Tclose(word);
+    ReadOptions options;
+    options.pixel_size_nm = 100;
+    return read_table(path(file), options);
+  };
+  const LocalisationTable numbers = make_table("i.hdf5", false), words = make_table("t.hdf5", true);
+  EXPECT_THAT(numbers.particle_names, ElementsAre("9912140633506421", "9912140633506422"));
+  EXPECT_THAT(words.particle_names, ElementsAre("007", "b 1"));
+  EXPECT_THAT(words.particle, ElementsAre(0, 1, -1));
+}
+
 TEST_F(PicassoReader, TheLastDocumentWithAPixelSizeDecides) {
   const std::string file = make<float>("f.hdf5", three);
   write("f.yaml", "Pixelsize: 160\n---\nPixelsize: 130\n---\nPixelsize: null\n");

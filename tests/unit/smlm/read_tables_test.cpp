@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "concatenate.hpp"
 #include "fixture.hpp"
 #include "smlm/particle_set.hpp"
+#include "smlm/repetitions.hpp"
 #include "smlm/table_reader.hpp"
 
 namespace smlm {
@@ -34,7 +36,7 @@ TEST_F(ReadTables, AFileCanBeAParticle) {
   std::filesystem::create_directory(path("one"));
   std::filesystem::create_directory(path("two"));
   const std::string text = "x_nm,y_nm,z_nm\n1,2,3\n1,2,4\n";
-  const std::vector<std::string> files{write("one/p.csv", text), write("two/p.csv", text),
+  const std::vector<std::string> files{write("one/p.csv", text), write("two/p.csv", text + "1,2,5\n"),
                                        write("q.csv", "x_nm,y_nm,z_nm\n9,9,9\n")};
   ReadOptions options;
   options.particles = "one_per_file";
@@ -59,9 +61,34 @@ TEST_F(ReadTables, TextColumnsOfSeveralFilesKeepTheirWords) {
 }
 
 TEST_F(ReadTables, FilesWithAndWithoutZDoNotMix) {
-  const std::string a = write("a.csv", "x_nm,y_nm,z_nm\n1,2,3\n");
+  const std::string a = write("a.csv", "x_nm,y_nm,z_nm\n1,2,3\n1,2,9\n");
   const std::string b = write("b.csv", "x_nm,y_nm\n1,2\n");
   EXPECT_EQ(test::error_of([&] { read_tables({a, b}, {}); }).fault(), Fault::input);
+  const std::string c = write("c.csv", "x_nm,y_nm,z_nm\n5,6,0\n");
+  EXPECT_TRUE(read_tables({b, c}, {}).planar) << "one row is too few to tell";
+  EXPECT_FALSE(read_tables({a, c}, {}).planar);
+}
+
+TEST_F(ReadTables, TheSameDataTwiceIsFound) {
+  const std::string rows = "1,10,20,3\n1,11,20,3\n1,10,25,3\n";
+  const std::string head = "particle,x_nm,y_nm,sigma_xy_nm\n";
+  const std::string a = write("a.csv", head + rows), b = write("b.csv", head + rows);
+  EXPECT_THAT(test::error_of([&] { read_tables({a, b}, {}); }).what(), HasSubstr("b.csv: holds the same as"));
+  // One row fewer is another file, and still the same particle.
+  const LocalisationTable table =
+      read_tables({a, write("c.csv", head + rows.substr(10) + "2,90,90,3\n2,91,95,3\n")}, {});
+  const Repetitions found = find_repetitions(table);
+  EXPECT_EQ(found.rows, 0u);
+  EXPECT_EQ(found.particles, 1u);
+  EXPECT_THAT(found.original, ElementsAre(0u, 0u, 2u));
+  EXPECT_EQ(find_repetitions(read_table(write("d.csv", head + rows + rows), {})).rows, 3u);
+}
+
+TEST_F(ReadTables, FilesAreCalledAsShortlyAsTellsThemApart) {
+  EXPECT_THAT(short_names({"/d/cell.csv", "/d/cell.txt", "/e/cell.csv"}),
+              ElementsAre("d/cell.csv", "cell.txt", "cell"));
+  EXPECT_THAT(short_names({"/a/b/x.csv", "/c/b/x.csv", "/a/y.csv.gz"}), ElementsAre("a/b/x", "c/b/x", "y"));
+  EXPECT_THAT(short_names({"/x.csv", "/a/x.csv"}), ElementsAre("x", "a/x"));
 }
 
 TEST_F(ReadTables, RejectionsRememberTheirFile) {
@@ -77,7 +104,8 @@ TEST_F(ReadTables, RejectionsRememberTheirFile) {
 
 TEST_F(ReadTables, OneWarningForManyFiles) {
   std::vector<std::string> files;
-  for (int i = 0; i < 5; ++i) files.push_back(write("f" + std::to_string(i) + ".csv", "x_nm,y_nm\n1,2\n"));
+  for (int i = 0; i < 5; ++i)
+    files.push_back(write("f" + std::to_string(i) + ".csv", "x_nm,y_nm\n1," + std::to_string(i) + "\n"));
   const LocalisationTable table = read_tables(files, {});
   ASSERT_EQ(table.warnings.size(), 1u);
   EXPECT_THAT(table.warnings[0], HasSubstr("and 4 more files"));

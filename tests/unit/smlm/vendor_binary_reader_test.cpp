@@ -1,5 +1,6 @@
 // Formats that are not text: SMAP, DECODE, pandas, .mat, .npy, .smlm.
 #include <gmock/gmock.h>
+#include <hdf5.h>
 #include <matio.h>
 #include <zip.h>
 
@@ -78,6 +79,55 @@ TEST_F(VendorBinary, PicassoWrittenByPandas) {
   EXPECT_THAT(table.particle_names, ElementsAre("4", "9"));
 }
 
+// What to_hdf(..., format="table") writes: array fields, whose names stand in attributes as pickled lists.
+TEST_F(VendorBinary, PicassoWrittenByPandasAsATable) {
+  struct Row {
+    std::int64_t index;
+    float block0[4];
+    std::int64_t block1[2];
+  };
+  const Row rows[]{{0, {1, 2, .1F, .2F}, {7, 9912140633506421}},
+                   {1, {3, 4, .1F, .2F}, {8, 9912140633506422}}};
+  const hsize_t four = 4, two = 2;
+  const hid_t floats = H5Tarray_create2(H5T_NATIVE_FLOAT, 1, &four);
+  const hid_t whole = H5Tarray_create2(H5T_NATIVE_INT64, 1, &two);
+  const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof(Row));
+  H5Tinsert(type, "index", offsetof(Row, index), H5T_NATIVE_INT64);
+  H5Tinsert(type, "values_block_0", offsetof(Row, block0), floats);
+  H5Tinsert(type, "values_block_1", offsetof(Row, block1), whole);
+  const hid_t file = H5Fcreate(path("t.hdf5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t group = H5Gcreate2(file, "/locs", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(1, &two, nullptr);
+  const hid_t data = H5Dcreate2(group, "table", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows);
+  for (const auto& [name, text] :
+       {std::pair<const char*, std::string>{"values_block_0_kind",
+                                            "(lp0\nVx\np1\naVy\np2\naVlpx\np3\naVlpy\np4\na."},
+        {"values_block_1_kind", "(lp1\nVframe\np2\naVgroup\np3\na."}}) {
+    const hid_t word = H5Tcopy(H5T_C_S1);
+    H5Tset_size(word, text.size());
+    const hid_t scalar = H5Screate(H5S_SCALAR);
+    const hid_t attribute = H5Acreate2(data, name, word, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(attribute, word, text.data());
+    H5Aclose(attribute);
+    H5Sclose(scalar);
+    H5Tclose(word);
+  }
+  for (const hid_t t : {floats, whole, type}) H5Tclose(t);
+  H5Sclose(space);
+  H5Dclose(data);
+  H5Gclose(group);
+  H5Fclose(file);
+  ReadOptions options;
+  options.pixel_size_nm = 100;
+  const LocalisationTable table = read_table(path("t.hdf5"), options);
+  EXPECT_THAT(table.formats, ElementsAre("picasso_pandas"));
+  EXPECT_THAT(table.position_nm[1], ElementsAre(300, 400, 0));
+  EXPECT_THAT(table.particle_names, ElementsAre("9912140633506421", "9912140633506422"));
+  ASSERT_EQ(table.extra.size(), 1u);
+  EXPECT_THAT(table.extra[0].values, ElementsAre(7, 8));
+}
+
 // A MATLAB 5 file with one cell per particle: points (2 x 3) and sigma (2 x 2).
 void write_particles_v5(const std::string& path, const char* variable, const char* points_name) {
   mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
@@ -153,12 +203,13 @@ TEST_F(VendorBinary, RealParticleCellsEqualTheirCsv) {
 }
 
 // An .npy file of the classic MINFLUX layout: two iterations, the second one final.
-std::string minflux_npy(std::size_t records) {
-  std::string header =
-      "{'descr': [('itr', [('itr', '<i4'), ('loc', '<f8', (3,)), ('efo', '<f4')], (2,)), ('tid', '<i4'), "
-      "('vld', '|b1'), "
-      "('nr', '>u2')], 'fortran_order': False, 'shape': (" +
-      std::to_string(records) + ",), }";
+std::string minflux_npy(std::size_t records, bool flat = false) {
+  std::string header = std::string("{'descr': [('itr', [('itr', '<i4'), ('loc', '<f8', (") +
+                       (flat ? "2" : "3") +
+                       ",)), ('efo', '<f4')], (2,)), ('tid', '<i4'), "
+                       "('vld', '|b1'), "
+                       "('nr', '>u2')], 'fortran_order': False, 'shape': (" +
+                       std::to_string(records) + ",), }";
   header.resize((header.size() + 10 + 63) / 64 * 64 - 10, ' ');
   std::string file("\x93NUMPY\x01\x00", 8);
   file += static_cast<char>(header.size() & 255);
@@ -174,7 +225,7 @@ std::string minflux_npy(std::size_t records) {
       const double scale = iteration == 1 ? 1e-9 : 7;
       put(scale * (100 + static_cast<double>(i % 5)));
       put(scale * (200 + 2 * static_cast<double>(i % 5)));
-      put(scale * (50 + static_cast<double>(i % 5)));
+      if (!flat) put(scale * (50 + static_cast<double>(i % 5)));
       put(static_cast<float>(1000 * iteration));
     }
     put(static_cast<std::int32_t>(i / 5));
@@ -188,6 +239,7 @@ std::string minflux_npy(std::size_t records) {
 TEST_F(VendorBinary, MinfluxTakesTheLastIterationInMetres) {
   const LocalisationTable table = read_table(write("m.npy", minflux_npy(10)), {});
   EXPECT_THAT(table.formats, ElementsAre("minflux"));
+  EXPECT_THAT(table.warnings, Contains(HasSubstr("z is multiplied by 0.7")));
   ASSERT_EQ(table.size(), 9u);
   EXPECT_NEAR(table.position_nm[1][0], 101, 1e-9);
   EXPECT_NEAR(table.position_nm[1][2], 0.7 * 51, 1e-9);
@@ -227,6 +279,13 @@ TEST_F(VendorBinary, DamagedNpyFilesAreRefused) {
   std::string plain("\x93NUMPY\x01\x00\x3a\x00{'descr': '<f8', 'fortran_order': False, 'shape': (1,), }\n",
                     68);
   EXPECT_THAT(refused(plain + std::string(8, '\0')).what(), HasSubstr("not a MINFLUX table"));
+}
+
+TEST_F(VendorBinary, MinfluxInThePlaneHasTwoNumbers) {
+  const LocalisationTable table = read_table(write("flat.npy", minflux_npy(10, true)), {});
+  EXPECT_TRUE(table.planar);
+  EXPECT_EQ(table.size(), 9u);
+  EXPECT_NEAR(table.position_nm[1][1], 202, 1e-9);
 }
 
 TEST_F(VendorBinary, RealMinfluxZipsAreNamed) {

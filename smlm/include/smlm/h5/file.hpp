@@ -138,6 +138,9 @@ class File {
     if (!values.empty()) read_member_into(dataset, member, scalar_of<T>(), first, rows, values.data());
     return values;
   }
+  /// The same of a field of text, of fixed length.
+  std::vector<std::string> read_member_strings(const std::string& dataset, const std::string& member,
+                                               std::uint64_t first, std::uint64_t rows) const;
   /// A data set of strings, of fixed or variable length.
   std::vector<std::string> read_strings(const std::string& dataset) const;
   /// The absolute paths that a data set of object references points at (MATLAB's cell arrays).
@@ -191,6 +194,8 @@ class File {
   void read_into(const std::string& dataset, Scalar scalar, void* out) const;
   void read_member_into(const std::string& dataset, const std::string& member, Scalar scalar,
                         std::uint64_t first, std::uint64_t rows, void* out) const;
+  void read_field(const std::string& dataset, const std::string& member, std::int64_t element_type,
+                  std::uint64_t first, std::uint64_t rows, void* out) const;
   std::uint64_t attribute_elements(const std::string& object, const std::string& name) const;
   void read_attribute_into(const std::string& object, const std::string& name, Scalar scalar,
                            void* out) const;

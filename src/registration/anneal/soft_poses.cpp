@@ -1,0 +1,474 @@
+#include "soft_poses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "polar/core/constants.hpp"
+#include "polar/core/parallel.hpp"
+#include "polar/core/rng.hpp"
+#include "polar/core/so3.hpp"
+#include "polar/core/symmetry_group.hpp"
+#include "polar/flames/rotation_grid.hpp"
+#include "../data/template_tools.hpp"
+
+namespace polar {
+
+namespace {
+
+constexpr std::uint32_t kStartStage = 21, kGridStage = 23, kPoseStage = 24;
+constexpr std::size_t kDepositViews = 64;    // of one block of counts
+constexpr double kTiltReach = 2.6;           // standard deviations of the tilt prior that are searched
+
+double geometric(double first, double last, double t) { return first * std::pow(last / first, t); }
+
+LookupPoints points_of(const View& view, const std::vector<std::uint32_t>& subset, std::size_t most) {
+  LookupPoints out;
+  for (std::size_t k = 0; k < std::min(most, subset.size()); ++k)
+    out.add(view.points.col(static_cast<Eigen::Index>(subset[k])));
+  out.pad();
+  return out;
+}
+
+// `count` points of a random order, from a random place in it on.
+LookupPoints some_of(const LookupPoints& all, std::size_t count, KeyedRandom& random) {
+  const auto n = static_cast<std::size_t>(all.count);
+  if (count >= n) return all;
+  const std::size_t first = random.below(n);
+  LookupPoints out;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t j = (first + k) % n;
+    out.add({all.x[j], all.y[j], all.z[j]});
+  }
+  out.pad();
+  return out;
+}
+
+LookupPoints first_of(const LookupPoints& all, int count) {
+  if (count >= all.count) return all;
+  LookupPoints out = all;
+  out.count = count;
+  for (auto* a : {&out.x, &out.y, &out.z}) a->resize(static_cast<std::size_t>(count));
+  out.pad();
+  return out;
+}
+
+float angle_between(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
+  const float c = 0.5f * (a.cwiseProduct(b).sum() - 1);
+  return std::acos(std::clamp(c, -1.0f, 1.0f));
+}
+
+// `turn` after the pose, about a point of the template.
+SoftPose turned_about(const SoftPose& pose, const Eigen::Vector3f& centre, const Eigen::Matrix3f& turn) {
+  return {turn * pose.rotation, centre + turn * (pose.translation - centre)};
+}
+
+// Of the quaternion (1, w / 2), normalised: a rotation about w by nearly its length, cheaper than the exponential.
+Eigen::Matrix3f small_turn(const Eigen::Vector3f& w) {
+  return Eigen::Quaternionf(1, 0.5f * w.x(), 0.5f * w.y(), 0.5f * w.z()).normalized().toRotationMatrix();
+}
+
+// The rotations under which the template's z lies near where this one puts it in the view, or opposite.
+std::vector<Eigen::Matrix3f> near_axis(const std::vector<Eigen::Matrix3f>& grid, const Eigen::Matrix3f& rotation,
+                                       double cone_rad) {
+  const auto least = static_cast<float>(std::cos(cone_rad));
+  const Eigen::Vector3f axis = rotation.row(2).transpose();
+  std::vector<Eigen::Matrix3f> out;
+  std::copy_if(grid.begin(), grid.end(), std::back_inserter(out), [&](const Eigen::Matrix3f& r) {
+    return std::abs(r.row(2).dot(axis)) >= least;
+  });
+  if (out.empty()) out.push_back(rotation);
+  return out;
+}
+
+Eigen::Vector3f normal3(KeyedRandom& random, double scale, bool flat) {
+  Eigen::Vector3f v;
+  for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(scale * random.normal());
+  if (flat) v[2] = 0;
+  return v;
+}
+
+}  // namespace
+
+struct SoftAnnealer::Draw {
+  SoftPose pose;
+  float score = 0;  // log likelihood of the points looked at, prior included
+  double weight = 0;
+};
+
+namespace {
+
+// ln of likelihood and prior of one view's poses, scaled so that beta times it is the tempered posterior.
+class Scorer {
+ public:
+  Scorer(const LogVolume& volume, const LookupPoints& points, const PosePrior& prior, const Eigen::Vector3f& centre,
+         double shift, double prior_weight)
+      : volume_(volume), points_(points), prior_(prior), centre_(centre),
+        by_shift_(static_cast<float>(-0.5 * prior_weight / (shift * shift))),
+        by_tilt_(prior.tilt_rad > 0
+                     ? static_cast<float>(-0.5 * prior_weight / (prior.tilt_rad * prior.tilt_rad))
+                     : 0.0f) {}
+
+  void operator()(const Eigen::Matrix3f& rotation, const Eigen::Vector3f* translation, std::size_t shifts,
+                  float* score) const {
+    volume_.scores(points_, rotation, translation, shifts, score);
+    const float tilt = by_tilt_ == 0 ? 0 : tilt_of(rotation);
+    for (std::size_t s = 0; s < shifts; ++s)
+      score[s] += by_shift_ * (translation[s] - centre_).squaredNorm() + by_tilt_ * tilt * tilt;
+  }
+  float operator()(const SoftPose& pose) const {
+    float out = 0;
+    (*this)(pose.rotation, &pose.translation, 1, &out);
+    return out;
+  }
+
+ private:
+  float tilt_of(const Eigen::Matrix3f& rotation) const {
+    const float z = prior_.flip ? std::abs(rotation(2, 2)) : rotation(2, 2);
+    return std::acos(std::clamp(z, -1.0f, 1.0f));
+  }
+  const LogVolume& volume_;
+  const LookupPoints& points_;
+  const PosePrior& prior_;
+  Eigen::Vector3f centre_;
+  float by_shift_, by_tilt_;
+};
+
+constexpr int kMostClimbs = 3;        // steps of one size
+constexpr float kClimbGain = 1e-3f;   // less is rounding
+
+// Uphill over the neighbours along the axes of rotation and shift; steps halve.
+float climb(const Scorer& scorer, const Eigen::Vector3f& centre, float turn, float shift, int levels,
+            bool planar, SoftPose& pose) {
+  float score = scorer(pose);
+  for (int level = 0; level < levels; ++level, turn *= 0.5f, shift *= 0.5f) {
+    Eigen::Matrix3f turns[6];
+    int ways = 0;
+    for (int a = planar ? 2 : 0; a < 3; ++a)
+      for (const float sign : {-1.0f, 1.0f}) turns[ways++] = small_turn(sign * turn * Eigen::Vector3f::Unit(a));
+    for (int step = 0; step < kMostClimbs; ++step) {
+      SoftPose best = pose;
+      float most = score;
+      Eigen::Vector3f there[6];
+      float at[6];
+      int n = 0;
+      for (int a = 0; a < (planar ? 2 : 3); ++a)
+        for (const float sign : {-1.0f, 1.0f}) there[n++] = pose.translation + sign * shift * Eigen::Vector3f::Unit(a);
+      scorer(pose.rotation, there, static_cast<std::size_t>(n), at);
+      for (int k = 0; k < n; ++k)
+        if (at[k] > most) most = at[k], best = {pose.rotation, there[k]};
+      for (int w = 0; w < ways; ++w) {
+        const SoftPose turned = turned_about(pose, centre, turns[w]);
+        const float s = scorer(turned);
+        if (s > most) most = s, best = turned;
+      }
+      if (most <= score + kClimbGain) break;
+      pose = best, score = most;
+    }
+  }
+  return score;
+}
+
+}  // namespace
+
+SoftAnnealer::SoftAnnealer(const Problem& problem, std::vector<int> which, const AnnealOptions& options,
+                           const PosePrior& prior)
+    : problem_(problem), which_(std::move(which)), options_(options), prior_(prior),
+      frame_(options.reach, problem.planar() ? options.planar_voxel : options.voxel, problem.planar()),
+      all_(problem.size()), fitted_(problem.size()), judging_(problem.size()) {
+  parallel_for(which_.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(which_[k]);
+    all_[i] = points_of(problem.views.view[i], problem.sampled[i], static_cast<std::size_t>(options.most_localisations));
+    fitted_[i] = points_of(problem.views.view[i], problem.fitted[i],
+                           static_cast<std::size_t>(options.most_localisations));
+    judging_[i] = points_of(problem.views.view[i], problem.held_out[i],
+                            static_cast<std::size_t>(options.most_judging));
+  });
+}
+
+SoftState SoftAnnealer::random_start(std::uint64_t key) const {
+  SoftState state(frame_);
+  state.outlier_fraction = options_.first_outlier_fraction;
+  state.sample.resize(problem_.size());
+  state.best.resize(problem_.size());
+  const double lowest = prior_.tilt_rad > 0 ? std::cos(std::min(1.5, 2 * prior_.tilt_rad)) : -1;
+  for (const int v : which_) {
+    const auto i = static_cast<std::size_t>(v);
+    if (all_[i].count == 0) continue;
+    KeyedRandom random(problem_.seed, i + (key << 32), kStartStage);
+    for (int s = 0; s < 4; ++s) {
+      Eigen::Matrix3d r;
+      if (problem_.planar()) {
+        r = so3_exp({0, 0, kTwoPi * random.uniform()});
+      } else {
+        do r = random.rotation();
+        while ((prior_.flip ? std::abs(r(2, 2)) : r(2, 2)) < lowest);
+      }
+      state.sample[i].push_back({r.cast<float>(), Eigen::Vector3f::Zero()});
+    }
+    state.best[i] = state.sample[i].front();
+  }
+  return state;
+}
+
+SoftState SoftAnnealer::from_poses(const std::vector<SoftPose>& pose, double width) const {
+  SoftState state(frame_);
+  state.outlier_fraction = options_.first_outlier_fraction;
+  state.sample.resize(problem_.size());
+  state.best = pose;
+  for (const int v : which_) {
+    const auto i = static_cast<std::size_t>(v);
+    if (all_[i].count > 0) state.sample[i] = {pose[i]};
+  }
+  fuse(width, state);
+  return state;
+}
+
+void SoftAnnealer::fuse(const Points& points, double width, SoftState& state) const {
+  constexpr std::uint32_t kWhole = 48;  // weight of a view: divisible by the usual numbers of samples
+  std::vector<Eigen::Matrix3f> images = {Eigen::Matrix3f::Identity()};
+  for (std::size_t g = 1; g < state.group.size(); ++g) images.push_back(state.group[g].cast<float>());
+  VoxelCounts zero(frame_);
+  const VoxelCounts counts = ordered_sum(which_.size(), kDepositViews, zero, [&](std::size_t b, std::size_t e) {
+    VoxelCounts some(frame_);
+    for (std::size_t v = b; v < e; ++v) {
+      const auto i = static_cast<std::size_t>(which_[v]);
+      const auto& samples = state.sample[i];
+      if (samples.empty()) continue;
+      const std::uint32_t weight = std::max(1u, kWhole / static_cast<std::uint32_t>(samples.size()));
+      // Under a group fewer samples say as much: each comes with its images.
+      const std::size_t step = std::clamp<std::size_t>(images.size() / 4, 1, samples.size());
+      for (std::size_t k = 0; k < samples.size(); k += step)
+        for (const Eigen::Matrix3f& g : images)
+          some.add(points[i], g * samples[k].rotation, g * samples[k].translation, weight);
+    }
+    return some;
+  });
+  DensityGrid density(counts);
+  density.blur(width);
+  density.normalise();
+  // Expected outliers under the template just made; a prior keeps the share away from 0 and 1.
+  double outliers = 0, total = 0;
+  const double e = state.outlier_fraction, background = e * outlier_density(problem_.planar());
+  for (std::size_t v = 0; v < counts.count().size(); ++v) {
+    const auto n = static_cast<double>(counts.count()[v]);
+    if (n == 0) continue;
+    outliers += n * background / ((1 - e) * static_cast<double>(density.value()[v]) + background);
+    total += n;
+  }
+  const double prior = options_.outlier_pseudo_share;
+  if (total > 0)
+    state.outlier_fraction = std::clamp((outliers / total + options_.first_outlier_fraction * prior) / (1 + prior),
+                                        0.01, 0.5);
+  state.density = std::move(density);
+  state.width = width;
+}
+
+struct SoftAnnealer::Looked {
+  const LookupPoints &few, &fewer;  // localisations; the fewer are enough to leave most rotations out
+  const LogVolume& volume;
+  const std::vector<SoftPose>& last;  // samples of the last sweep
+  Eigen::Vector3f centre;
+  double beta;
+};
+
+std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view, const std::vector<Eigen::Matrix3f>& grid,
+                                                         double spacing, KeyedRandom& random) const {
+  const bool planar = problem_.planar();
+  const double beta = view.beta, prior_weight = 1 / std::max(beta, 0.02);
+  const Eigen::Vector3f& centre = view.centre;
+  const Scorer score(view.volume, view.few, prior_, centre, options_.shift, prior_weight);
+  const Scorer coarse(view.volume, view.fewer, prior_, centre, options_.shift,
+                      prior_weight * view.fewer.count / std::max(1, view.few.count));
+  const std::size_t n = grid.size();
+  std::vector<float> rough(n);
+  for (std::size_t r = 0; r < n; ++r) coarse(grid[r], &centre, 1, &rough[r]);
+  std::vector<std::uint32_t> order(n);
+  std::iota(order.begin(), order.end(), 0u);
+  const std::size_t promising =
+      std::min(n, std::max<std::size_t>(24, static_cast<std::size_t>(options_.promising_share * static_cast<double>(n))));
+  const auto better = [&](std::uint32_t a, std::uint32_t b) {
+    return rough[a] != rough[b] ? rough[a] > rough[b] : a < b;
+  };
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising) - 1, order.end(), better);
+  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising));
+  std::vector<Draw> found(promising);
+  const auto step = static_cast<float>(options_.shift);
+  for (std::size_t k = 0; k < promising; ++k) {
+    Draw& d = found[k];
+    d.pose = {grid[order[k]], centre};
+    d.score = score(d.pose);
+    for (int ring = 1; ring <= 2; ++ring) {
+      const Eigen::Vector3f from = d.pose.translation;
+      Eigen::Vector3f there[6];
+      float at[6];
+      int m = 0;
+      for (int a = 0; a < (planar ? 2 : 3); ++a)
+        for (const float sign : {-1.0f, 1.0f})
+          there[m++] = from + sign * step / static_cast<float>(ring) * Eigen::Vector3f::Unit(a);
+      score(d.pose.rotation, there, static_cast<std::size_t>(m), at);
+      for (int s = 0; s < m; ++s)
+        if (at[s] > d.score) d.score = at[s], d.pose.translation = there[s];
+    }
+  }
+  const auto by_score = [](const Draw& a, const Draw& b) { return a.score > b.score; };
+  if (beta >= options_.climbing_beta) {
+    std::stable_sort(found.begin(), found.end(), by_score);
+    std::vector<Draw> peaks;
+    for (std::size_t k = 0; k < std::min<std::size_t>(found.size(), static_cast<std::size_t>(options_.climbed)); ++k) {
+      if (k > 3 && beta * static_cast<double>(found[k].score - found[0].score) < -14) break;  // e^-14: never drawn
+      Draw d = found[k];
+      d.score = climb(score, centre, static_cast<float>(0.7 * spacing), 0.6f * step, 2, planar, d.pose);
+      peaks.push_back(d);
+    }
+    for (int k = 0; k < options_.kept && !view.last.empty(); ++k) {
+      Draw d{view.last[random.below(view.last.size())], 0, 0};
+      d.score = climb(score, centre, static_cast<float>(0.3 * spacing), 0.4f * step, 1, planar, d.pose);
+      peaks.push_back(d);
+    }
+    std::stable_sort(peaks.begin(), peaks.end(), by_score);
+    found.clear();  // one of every mode
+    const auto near = static_cast<float>(options_.same_mode_deg * kRadiansPerDegree);
+    for (const Draw& d : peaks)
+      if (std::none_of(found.begin(), found.end(), [&](const Draw& o) {
+            return angle_between(o.pose.rotation, d.pose.rotation) < near &&
+                   (o.pose.translation - d.pose.translation).norm() < 0.8f * step;
+          }))
+        found.push_back(d);
+  }
+  float top = -INFINITY;
+  for (const Draw& d : found) top = std::max(top, d.score);
+  for (Draw& d : found) d.weight = std::exp(beta * static_cast<double>(d.score - top));
+  return found;
+}
+
+void SoftAnnealer::draw_poses(const Points& points, const Sweep& sweep, SoftState& state) const {
+  const bool planar = problem_.planar();
+  KeyedRandom turns(problem_.seed, sweep.key, kGridStage);
+  std::vector<Eigen::Matrix3f> grid;
+  double spacing = 0;
+  if (planar) {
+    const auto n = options_.planar_rotations / static_cast<int>(std::max<std::size_t>(1, state.group.size()));
+    const double first = turns.uniform();
+    spacing = kTwoPi / options_.planar_rotations;
+    for (int i = 0; i < n; ++i)
+      grid.push_back(so3_exp({0, 0, spacing * (i + first)}).cast<float>());
+  } else {
+    // Rotations that a prior or a group leaves out are spent on the others.
+    double share = 1;
+    const double lowest = prior_.tilt_rad > 0 ? std::cos(std::min(1.5, kTiltReach * prior_.tilt_rad)) : -1;
+    if (prior_.tilt_rad > 0) share = (1 - lowest) / 2 * (prior_.flip ? 2 : 1);
+    const auto order = static_cast<double>(std::max<std::size_t>(1, state.group.size()));
+    const int whole =
+        std::min(options_.most_rotations, static_cast<int>(sweep.rotations / share * std::max(1.0, order * options_.unit_share)));
+    const Eigen::Matrix3f turn = turns.rotation().cast<float>();
+    for (const Eigen::Quaternionf& q : super_fibonacci(whole)) {
+      const Eigen::Matrix3f r = q.toRotationMatrix() * turn;
+      const float z = prior_.flip ? std::abs(r(2, 2)) : r(2, 2);
+      if (static_cast<double>(z) >= lowest && in_asymmetric_unit(state.group, r)) grid.push_back(r);
+    }
+    spacing = 0.5 * std::cbrt(8 * kPi * kPi / whole);
+  }
+  const LogVolume volume(state.density, state.outlier_fraction, outlier_density(planar));
+  Eigen::Vector3f centre = state.density.centroid().cast<float>();
+  if (!state.group.empty()) {  // on every axis of the group
+    Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+    for (const Eigen::Matrix3d& g : state.group) mean += g;
+    centre = (mean / static_cast<double>(state.group.size())).cast<float>() * centre;
+  }
+  if (planar) centre.z() = 0;
+  parallel_for(which_.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(which_[k]);
+    const LookupPoints& all = points[i];
+    if (all.count == 0) return;
+    KeyedRandom random(problem_.seed, i + (sweep.key << 32), kPoseStage);
+    const LookupPoints few = some_of(all, static_cast<std::size_t>(sweep.localisations), random);
+    const LookupPoints fewer = first_of(few, std::max(std::min(few.count, 24), few.count / 2));
+    const double b = sweep.beta * all.count / few.count;  // the few stand for all
+    const Looked view{few, fewer, volume, state.sample[i], centre, b};
+    const std::vector<Draw> found =
+        sweep.cone_rad > 0
+            ? candidates(view, near_axis(grid, state.best[i].rotation, sweep.cone_rad), spacing, random)
+            : candidates(view, grid, spacing, random);
+    double total = 0;
+    const Draw* likeliest = &found.front();
+    for (const Draw& d : found) {
+      total += d.weight;
+      if (d.score > likeliest->score) likeliest = &d;
+    }
+    const Scorer score(volume, few, prior_, centre, options_.shift, 1 / std::max(b, 0.02));
+    const double turn = std::min(spacing, options_.jitter_turn / std::sqrt(std::max(b, 0.02)));
+    const double shift = std::min(0.08, options_.jitter_shift / std::sqrt(std::max(b, 0.02)));
+    const int samples = options_.samples;
+    std::vector<SoftPose> drawn;
+    double sum = 0;
+    const double offset = random.uniform();
+    for (const Draw& d : found) {  // systematic: as even as the weights allow
+      sum += d.weight / total * samples;
+      while (static_cast<int>(drawn.size()) < samples && sum > static_cast<double>(drawn.size()) + offset) {
+        SoftPose p = d.pose;
+        float at = d.score;
+        for (int s = 0; s < options_.jitters; ++s) {
+          const double scale = s % 2 == 1 ? 1.0 : 0.4;
+          Eigen::Vector3f w = normal3(random, scale * turn, false);
+          if (planar) w.x() = w.y() = 0;
+          SoftPose q = turned_about(p, centre, small_turn(w));
+          q.translation += normal3(random, scale * shift, planar);
+          const float there = score(q);
+          if (b * static_cast<double>(there - at) > std::log(1 - random.uniform())) p = q, at = there;
+        }
+        drawn.push_back(p);
+      }
+    }
+    if (drawn.empty()) drawn.push_back(likeliest->pose);
+    state.best[i] = likeliest->pose;
+    state.sample[i] = std::move(drawn);
+  });
+}
+
+void SoftAnnealer::anneal(const AnnealStage& stage, std::uint64_t key, SoftState& state) const {
+  fuse(stage.first_width, state);
+  continue_under(stage, key, state);
+}
+
+void SoftAnnealer::continue_under(const AnnealStage& stage, std::uint64_t key, SoftState& state) const {
+  for (int t = 0; t < stage.sweeps; ++t) {
+    const double f = stage.sweeps > 1 ? static_cast<double>(t) / (stage.sweeps - 1) : 1.0;
+    const double g = std::min(1.0, f / stage.narrowing);
+    const bool early = stage.from_nothing && f < 0.5;
+    draw_poses(all_,
+               {geometric(stage.first_beta, stage.last_beta, g), early ? options_.rotations / 2 : options_.rotations,
+                early ? options_.first_localisations : options_.localisations, stage.cone_rad,
+                key * 1024 + static_cast<std::uint64_t>(t)},
+               state);
+    fuse(geometric(stage.first_width, stage.last_width, g), state);
+  }
+}
+
+Evidence SoftAnnealer::judge(SoftState state, std::uint64_t key, double cone_rad) const {
+  const double width = state.width;
+  fuse(fitted_, width, state);
+  for (std::uint64_t t = 0; t < 2; ++t) {
+    draw_poses(fitted_,
+               {options_.last_beta, options_.rotations, options_.localisations, cone_rad, key * 1024 + 512 + t}, state);
+    fuse(fitted_, width, state);
+  }
+  const LogVolume volume(state.density, state.outlier_fraction, outlier_density(problem_.planar()));
+  Evidence out(which_.size(), NAN);
+  parallel_for(which_.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(which_[k]);
+    const LookupPoints& points = judging_[i];
+    if (points.count == 0 || state.sample[i].empty()) return;
+    std::vector<double> score;
+    for (const SoftPose& p : state.sample[i])
+      score.push_back(static_cast<double>(volume.score(points, p.rotation, p.translation)));
+    const double top = *std::max_element(score.begin(), score.end());
+    double sum = 0;
+    for (const double s : score) sum += std::exp(s - top);
+    out[k] = (top + std::log(sum / static_cast<double>(score.size()))) / points.count;
+  });
+  return out;
+}
+
+}  // namespace polar

@@ -1,0 +1,95 @@
+// Poses as a posterior: samples of equal weight for every view, drawn under the density of all posed
+// localisations. A sweep is one expectation step (draw poses) and one maximisation step (posed density).
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "../data/evidence.hpp"
+#include "../data/problem.hpp"
+#include "polar/core/rng.hpp"
+#include "polar/fusion/orbits.hpp"
+#include "polar/fusion/density_grid.hpp"
+#include "polar/registration/engine_options.hpp"
+
+namespace polar {
+
+struct SoftPose {
+  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();  // template_from_view
+  Eigen::Vector3f translation = Eigen::Vector3f::Zero();
+};
+
+/// Which orientations are possible at all; part of every posterior.
+struct PosePrior {
+  double tilt_rad = 0;  // standard deviation of a view's z from the template's; 0: any orientation
+  bool flip = false;    // either way up
+};
+
+struct SoftState {
+  std::vector<std::vector<SoftPose>> sample;  // of every view of the problem; empty: takes no part
+  std::vector<SoftPose> best;                 // of every view: the likeliest found
+  DensityGrid density;
+  double outlier_fraction = 0.05;
+  double width = 0;      // of the density
+  RotationGroup group;   // of the density; empty: none
+  explicit SoftState(const VoxelFrame& frame) : density(frame) {}
+};
+
+/// One row of the annealing schedule.
+struct AnnealStage {
+  int sweeps;
+  double first_width, last_width, first_beta, last_beta, narrowing;
+  bool from_nothing = false;  // few rotations and localisations in the first half
+  double cone_rad = 0;  // a view's axis stays so near to that of its likeliest pose, either way up; 0: anywhere
+};
+
+class SoftAnnealer {
+ public:
+  /// Of the views `which`. The problem outlives the object.
+  SoftAnnealer(const Problem& problem, std::vector<int> which, const AnnealOptions& options,
+               const PosePrior& prior);
+
+  /// Random poses; `key` tells starts apart.
+  SoftState random_start(std::uint64_t key) const;
+  /// One sample a view: poses from elsewhere.
+  SoftState from_poses(const std::vector<SoftPose>& pose, double width) const;
+
+  /// The density of the samples, blurred by `width`, symmetric under the state's group.
+  void fuse(double width, SoftState& state) const { fuse(all_, width, state); }
+  /// From the state's samples.
+  void anneal(const AnnealStage& stage, std::uint64_t key, SoftState& state) const;
+  /// From the state's density, whatever its samples are.
+  void continue_under(const AnnealStage& stage, std::uint64_t key, SoftState& state) const;
+
+  /// Log of the mean over samples of the density of held-out localisations, per localisation; one a view of
+  /// `which`. Poses and density are first drawn again from the fitted localisations alone: two sweeps.
+  Evidence judge(SoftState state, std::uint64_t key, double cone_rad = 0) const;
+
+  const std::vector<int>& which() const { return which_; }
+  const VoxelFrame& frame() const { return frame_; }
+
+ private:
+  struct Draw;
+  struct Looked;  // one view, as a sweep looks at it
+  std::vector<Draw> candidates(const Looked& view, const std::vector<Eigen::Matrix3f>& grid, double spacing,
+                               KeyedRandom& random) const;
+  using Points = std::vector<LookupPoints>;  // of every view of the problem
+  void fuse(const Points& points, double width, SoftState& state) const;
+  struct Sweep {
+    double beta;
+    int rotations, localisations;
+    double cone_rad;
+    std::uint64_t key;
+  };
+  void draw_poses(const Points& points, const Sweep& sweep, SoftState& state) const;
+
+  const Problem& problem_;
+  std::vector<int> which_;
+  AnnealOptions options_;
+  PosePrior prior_;
+  VoxelFrame frame_;
+  Points all_, fitted_, judging_;
+};
+
+}  // namespace polar

@@ -1,0 +1,179 @@
+#include "refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../data/template_tools.hpp"
+#include "polar/core/rng.hpp"
+#include "polar/fusion/calibration.hpp"
+#include "polar/fusion/discretise.hpp"
+#include "polar/fusion/occupancy.hpp"
+#include "polar/fusion/search_again.hpp"
+
+namespace polar {
+
+namespace {
+
+constexpr std::uint32_t kTurnStage = 31;
+constexpr double kPooled = 2;      // spreads of a centre, within which a view tells centres apart no better
+constexpr int kJudgingSweeps = 2;  // without the held-out localisations, before they judge
+
+int centres_for(const Problem& problem, const RefineOptions& o) {
+  return std::clamp(static_cast<int>(problem.localisations / o.localisations_per_centre), o.fewest_centres,
+                    o.most_centres);
+}
+
+double spread(const NoiseModel& noise) { return std::hypot(noise.width, noise.lateral_extra); }
+
+}  // namespace
+
+void show(const Fit& fit, const Mixture& mixture, FusionData& data) {
+  if (std::isfinite(fit.occupancy))
+    data.set_visibility(occupancy(mixture, data, fit.pose, fit.occupancy, kPooled * spread(fit.noise)));
+}
+
+Fit Refiner::begin(std::vector<Pose> pose, const NoiseModel& noise, const RotationGroup& group) const {
+  Fit fit;
+  fit.pose = std::move(pose);
+  fit.noise = noise;
+  fit.noise.planar = problem_.planar();
+  fit.noise.width = options_.first_width;
+  fit.group = group;
+  fit.margin.assign(problem_.size(), INFINITY);
+  const Subsets few = first_of(problem_.sampled, static_cast<std::size_t>(options_.localisations));
+  const int wanted = centres_for(problem_, options_) / static_cast<int>(std::max<std::size_t>(1, group.size()));
+  fit.mixture = scattered_mixture(problem_, few, problem_.all, fit.pose, std::max(wanted, options_.fewest_of_unit), 1);
+  if (!group.empty()) fit.mixture = symmetrised(fit.mixture, group, 0.5 * options_.first_width);
+  sweep(few, fit, 2 * options_.sweeps);
+  return fit;
+}
+
+void Refiner::sweep(const Subsets& subsets, Fit& fit, int sweeps, bool poses) const {
+  FusionData data(problem_.views, problem_.axes, fit.noise, subsets);
+  for (int s = 0; s < sweeps; ++s) {
+    MaximisationOptions em;
+    em.reseed_distance = 0.5 * std::max(fit.noise.width, 0.02);
+    em.seed = problem_.seed + static_cast<std::uint64_t>(100 * fit.rounds + s);
+    em.group = fit.group;
+    em.free_weights = true;
+    em.support = problem_.crowded || !fit.group.empty();
+    show(fit, fit.mixture, data);
+    maximise(fit.mixture, data, fit.pose, em);
+    if (s == 0 || !poses) continue;
+    show(fit, fit.mixture, data);
+    refine_poses(fit.mixture, data, fit.pose, 2);
+  }
+}
+
+void Refiner::sweep(Fit& fit, int sweeps) const {
+  sweep(first_of(problem_.sampled, static_cast<std::size_t>(options_.localisations)), fit, sweeps);
+}
+
+void Refiner::sweep_blind(Fit& fit, int sweeps) const {
+  sweep(first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations)), fit, sweeps, false);
+}
+
+void Refiner::search(Fit& fit) const {
+  NoiseModel noise = fit.noise;
+  noise.width = std::sqrt(std::max(noise.width * noise.width,
+                                   options_.search_width * options_.search_width -
+                                       noise.lateral_extra * noise.lateral_extra));
+  SearchAgainOptions o;
+  o.basins = options_.basins;
+  o.group = fit.group;
+  o.most_localisations = options_.search_localisations;
+  o.grid.translation = axis_shifts(static_cast<float>(options_.shift), problem_.planar());
+  o.grid.promising = options_.promising;
+  o.grid.step = static_cast<float>(options_.step);
+  const Eigen::Matrix3f turn = grid_turn(
+      problem_.planar(), KeyedRandom(problem_.seed, static_cast<std::uint64_t>(fit.rounds), kTurnStage));
+  SearchAgainReport report = search_again(problem_.views, problem_.axes, problem_.sampled, fit.mixture, noise,
+                                          grid_, turn, o, fit.pose);
+  fit.margin = std::move(report.margin);
+  fit.escaped = static_cast<int>(report.escaped.size());
+  ++fit.rounds;
+}
+
+Evidence Refiner::judge(Fit fit) const {
+  fit.occupancy = std::numeric_limits<double>::infinity();  // a label that judges is missing in what was fitted
+  sweep(first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations)), fit, kJudgingSweeps);
+  const FusionData data(problem_.views, problem_.axes, fit.noise, problem_.held_out);
+  Evidence evidence = mean_log_likelihood(fit.mixture, data, fit.pose);
+  for (std::size_t i = 0; i < evidence.size(); ++i)
+    if (problem_.held_out[i].empty()) evidence[i] = NAN;
+  return evidence;
+}
+
+Fit Refiner::rounds(Fit fit, Progress& progress) const {
+  const int total = 1 + static_cast<int>(std::ceil(std::log(options_.last_width / options_.first_width) /
+                                                   std::log(options_.narrowing)));
+  Fit best = fit;
+  bool searching = true;
+  for (int round = 0; round < total && !progress.cancelled(); ++round) {
+    fit.noise.width = std::max(options_.last_width, options_.first_width * std::pow(options_.narrowing, round));
+    if (searching && round < options_.most_searches) {
+      search(fit);
+      searching = round == 0 || fit.escaped > options_.settled * static_cast<double>(problem_.size());
+    }
+    if (round == 0) {  // the views that were turned far say where centres are missing
+      const int searches = fit.rounds, escaped = fit.escaped;
+      std::vector<double> margin = std::move(fit.margin);
+      fit = begin(std::move(fit.pose), fit.noise, fit.group);
+      fit.rounds = searches, fit.escaped = escaped, fit.margin = std::move(margin);
+    } else {
+      sweep(fit, options_.sweeps);
+    }
+    fit.evidence = judge(fit);
+    progress.step("registering", round + 1, total);
+    if (round == 0 || compare(best.evidence, fit.evidence).better_by(0))
+      best = fit;
+    else if (!searching)
+      break;
+  }
+  return best;
+}
+
+Fit Refiner::narrowed(Fit fit) const {
+  while (fit.noise.width * options_.narrowing >= options_.last_width) {
+    Fit next = fit;
+    next.noise.width *= options_.narrowing;
+    sweep(next, options_.sweeps);
+    next.evidence = judge(next);
+    if (!compare(fit.evidence, next.evidence).better_by(0)) break;
+    fit = std::move(next);
+  }
+  return fit;
+}
+
+Fit Refiner::discrete(Fit fit) const {
+  const double finest = std::max(spread(fit.noise), options_.last_width / 2);
+  for (const double factor : {1.0, 2.0, 4.0}) {
+    Fit next = fit;
+    next.mixture = fit.group.empty() ? merged(fit.mixture, factor * finest)
+                                     : symmetrised(fit.mixture, fit.group, factor * finest);
+    if (next.mixture.size() >= fit.mixture.size()) continue;
+    sweep(next, 2 * options_.sweeps);
+    next.evidence = judge(next);
+    if (!compare(fit.evidence, next.evidence).better_by(-options_.fewer_centres_errors)) break;
+    fit = std::move(next);
+  }
+  const FusionData data(problem_.views, problem_.axes, fit.noise, problem_.sampled);
+  fit.occupancy = likeliest_strength(fit.mixture, data, fit.pose, kPooled * spread(fit.noise));
+  return fit;
+}
+
+Fit Refiner::calibrated(Fit fit) const {
+  const Subsets fitted = first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations));
+  for (int c = 0; c < options_.calibrations; ++c) {
+    Fit next = fit, blind = fit;
+    sweep(fitted, blind, kJudgingSweeps);
+    next.noise = calibrate(problem_.views, problem_.axes, problem_.held_out, blind.mixture, blind.pose, fit.noise).noise;
+    sweep(next, options_.sweeps);
+    next.evidence = judge(next);
+    if (!compare(fit.evidence, next.evidence).better_by(0)) break;
+    fit = std::move(next);
+  }
+  return fit;
+}
+
+}  // namespace polar

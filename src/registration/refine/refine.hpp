@@ -1,0 +1,65 @@
+// The exact end of the loop: a template of centres, every localisation with its own covariance. Search, fuse,
+// climb, narrower each round as long as held-out localisations gain by it (paper Algorithm 1 with the
+// likelihood in place of the latent loss).
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "../data/evidence.hpp"
+#include "../data/problem.hpp"
+#include "polar/core/progress.hpp"
+#include "polar/flames/search_grid.hpp"
+#include "polar/fusion/maximisation.hpp"
+#include "polar/fusion/mixture.hpp"
+
+namespace polar {
+
+struct Fit {
+  Mixture mixture;
+  std::vector<Pose> pose;  // template_from_view, all views
+  NoiseModel noise;
+  RotationGroup group;          // of the template; empty: none
+  std::vector<double> margin;   // of the last search
+  double occupancy = std::numeric_limits<double>::infinity();  // strength (polar/fusion/occupancy.hpp)
+  Evidence evidence;            // of all views, at this width and noise
+  int rounds = 0;
+  int escaped = 0;  // views that moved far in the last search
+};
+
+/// Sets what of the template each view of `data` (all views) shows.
+void show(const Fit& fit, const Mixture& mixture, FusionData& data);
+
+class Refiner {
+ public:
+  Refiner(const Problem& problem, const SearchGrid& grid, const RefineOptions& options)
+      : problem_(problem), grid_(grid), options_(options) {}
+
+  /// A template under these poses, at the first width.
+  Fit begin(std::vector<Pose> pose, const NoiseModel& noise, const RotationGroup& group) const;
+  /// Rounds until nothing is gained; keeps the best.
+  Fit rounds(Fit fit, Progress& progress) const;
+  /// Narrower, without a search, as long as evidence gains.
+  Fit narrowed(Fit fit) const;
+  /// Noise and template in turn, as long as evidence gains.
+  Fit calibrated(Fit fit) const;
+  /// Fewer centres, as long as evidence does not lose by it.
+  Fit discrete(Fit fit) const;
+  /// One search over all views; counts those that moved far.
+  void search(Fit& fit) const;
+  /// Template and poses on all localisations.
+  void sweep(Fit& fit, int sweeps) const;
+  /// The template alone, without the held-out localisations, poses as they are.
+  void sweep_blind(Fit& fit, int sweeps) const;
+  /// Of the template and poses fitted again without the held-out localisations.
+  Evidence judge(Fit fit) const;
+
+ private:
+  void sweep(const Subsets& subsets, Fit& fit, int sweeps, bool poses = true) const;
+
+  const Problem& problem_;
+  const SearchGrid& grid_;
+  RefineOptions options_;
+};
+
+}  // namespace polar

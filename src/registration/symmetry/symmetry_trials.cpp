@@ -1,0 +1,226 @@
+#include "symmetry_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harmonics.hpp"
+#include "polar/core/constants.hpp"
+#include "polar/core/symmetry_group.hpp"
+#include "self_similarity.hpp"
+#include "symmetry_frame.hpp"
+
+namespace polar {
+
+namespace {
+
+constexpr const char* kAnyTurn = "C7";  // what looks alike under it and is no heptagon is alike under any turn
+
+struct Trial {
+  std::string group;
+  double similarity = 0;
+  SoftState state;
+  Evidence evidence;
+};
+
+std::size_t order_of(const std::string& group) { return std::max<std::size_t>(1, rotations_of(group).size()); }
+
+bool is_cyclic(const std::string& group) { return group[0] == 'C' && group != "C1"; }
+
+int fold_of(const std::string& group) { return std::stoi(group.substr(1)); }
+
+void move_to(const Pose& canonical_from_template, SoftState& state) {
+  const Eigen::Matrix3f r = canonical_from_template.rotation.cast<float>();
+  const Eigen::Vector3f t = canonical_from_template.translation.cast<float>();
+  const auto moved = [&](SoftPose& p) { p = {r * p.rotation, r * p.translation + t}; };
+  for (auto& samples : state.sample) std::for_each(samples.begin(), samples.end(), moved);
+  std::for_each(state.best.begin(), state.best.end(), moved);
+}
+
+class Trials {
+ public:
+  Trials(const Problem& problem, const RegistrationOptions& options, const SoftState& coarse)
+      : problem_(problem), options_(options.engine), o_(options_.symmetry),
+        annealer_(problem, some_views(problem, static_cast<std::size_t>(o_.views)), options_.anneal,
+                  {options.tilt_deg * kRadiansPerDegree, options.flip}),
+        coarse_(coarse), similarity_(coarse.density, o_.similarity_blur) {
+    // Poses of all views that take part, under the template of those that competed.
+    annealer_.continue_under(stage(1), 1990, coarse_);
+  }
+
+  /// Groups that the coarse template hints at, C1 first.
+  std::vector<SymmetryFrame> hinted(const std::string& asked) {
+    std::vector<SymmetryFrame> out = {{"C1", {}, 1}};
+    SymmetryFrame axial = best_frame(similarity_, kAnyTurn, o_.hint);
+    if (axial.similarity >= o_.axial_hint) {
+      std::vector<SoftPose> pose = in_frame(axial.canonical_from_template).best;
+      std::size_t taken = 0;
+      for (const AxialHarmonic& h :
+           axial_harmonics(problem_, options_.evidence, pose, annealer_.which(), o_.highest_order)) {
+        axial.group = "C" + std::to_string(h.order);
+        const bool strong = taken < static_cast<std::size_t>(o_.orders) && h.significance >= o_.least_significance;
+        if (strong) ++taken;
+        // Where no order stands out the two highest tell a body of revolution.
+        const bool any_turn = taken == 0 && h.order >= o_.highest_order - 1;
+        if (strong || any_turn || axial.group == asked) out.push_back(axial);
+      }
+    } else {
+      std::vector<std::string> names;
+      for (int n = 2; n <= o_.highest_order; ++n) names.push_back("C" + std::to_string(n));
+      if (!problem_.planar()) names.insert(names.end(), {"T", "O", "I"});
+      for (const std::string& name : names) {
+        const SymmetryFrame f = best_frame(similarity_, name, o_.hint);
+        if (f.similarity >= o_.hint || name == asked) out.push_back(f);
+      }
+    }
+    const bool has = std::any_of(out.begin(), out.end(), [&](const auto& f) { return f.group == asked; });
+    if (!asked.empty() && !has && asked[0] != 'D') out.push_back(best_frame(similarity_, asked, -INFINITY));
+    return out;
+  }
+
+  Trial run(const SymmetryFrame& frame, std::uint64_t key) {
+    SoftState state = in_frame(frame.canonical_from_template);
+    if (is_cyclic(frame.group) && frame.similarity >= o_.hint) {
+      align_azimuths(problem_, fold_of(frame.group), annealer_.which(), state.best);
+      for (const int i : annealer_.which()) {
+        auto& samples = state.sample[static_cast<std::size_t>(i)];
+        if (!samples.empty()) samples = {state.best[static_cast<std::size_t>(i)]};
+      }
+    }
+    return annealed(frame.group, frame.similarity, std::move(state), key);
+  }
+
+  /// With two-fold axes across that of a cyclic group's trial.
+  Trial dihedral(const Trial& cyclic, std::uint64_t key) {
+    const std::string group = "D" + cyclic.group.substr(1);
+    const SymmetryFrame f =
+        best_frame(SelfSimilarity(cyclic.state.density, o_.similarity_blur), group, -INFINITY);
+    SoftState state = cyclic.state;
+    move_to(f.canonical_from_template, state);
+    return annealed(group, f.similarity, std::move(state), key);
+  }
+
+ private:
+  AnnealStage stage(int sweeps) const {
+    const AnnealOptions& a = options_.anneal;
+    return {sweeps, o_.first_width, a.last_width, o_.first_beta, a.last_beta, o_.narrowing, false, 0};
+  }
+  SoftState in_frame(const Pose& canonical_from_template) const {
+    SoftState state = coarse_;
+    move_to(canonical_from_template, state);
+    return state;
+  }
+  Trial annealed(const std::string& group, double similarity, SoftState state, std::uint64_t key) {
+    state.group = rotations_of(group);
+    annealer_.anneal(stage(o_.sweeps), key, state);
+    Evidence evidence = annealer_.judge(state, key);
+    return {group, similarity, std::move(state), std::move(evidence)};
+  }
+
+  const Problem& problem_;
+  const EngineOptions& options_;
+  const SymmetryOptions& o_;
+  SoftAnnealer annealer_;
+  SoftState coarse_;
+  SelfSimilarity similarity_;
+};
+
+std::size_t best_of(const std::vector<Trial>& trials) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < trials.size(); ++k)
+    if (mean_evidence(trials[k].evidence) > mean_evidence(trials[best].evidence)) best = k;
+  return best;
+}
+
+bool divides(int n, int m) { return m % n == 0; }
+
+// Whether every turn of `inner` is one of `outer`, axes alike.
+bool contains(const std::string& outer, const std::string& inner) {
+  if (inner == "C1" || inner == outer) return true;
+  const auto axial = [](const std::string& g) { return g[0] == 'C' || g[0] == 'D'; };
+  if (!axial(outer) || !axial(inner)) return outer == "O" && inner == "T";
+  return divides(fold_of(inner), fold_of(outer)) && (inner[0] == 'C' || outer[0] == 'D');
+}
+
+// The best one, and what contains it as long as that costs no more than the error of the evidence.
+std::size_t largest_free(const std::vector<Trial>& trials, const EngineOptions& options) {
+  const std::size_t best = best_of(trials);
+  // That a structure is symmetric at all is tested again on the exact template, so it may cost more here.
+  const double tolerance = trials[best].group == "C1" ? options.symmetry.means_standard_errors
+                                                      : options.evidence.standard_errors;
+  const auto is_free = [&](std::size_t k) {
+    return compare(trials[best].evidence, trials[k].evidence).better_by(-tolerance);
+  };
+  std::size_t chosen = best;
+  for (bool grown = true; grown;) {
+    grown = false;
+    std::size_t next = chosen;
+    for (std::size_t k = 0; k < trials.size(); ++k)
+      if (k != chosen && contains(trials[k].group, trials[chosen].group) && is_free(k) &&
+          (next == chosen || mean_evidence(trials[k].evidence) > mean_evidence(trials[next].evidence)))
+        next = k;
+    if (next != chosen) chosen = next, grown = true;
+  }
+  return chosen;
+}
+
+const Trial* named(const std::vector<Trial>& trials, const std::string& group) {
+  const auto at = std::find_if(trials.begin(), trials.end(), [&](const Trial& t) { return t.group == group; });
+  return at == trials.end() ? nullptr : &*at;
+}
+
+}  // namespace
+
+RotationGroup rotations_of(const std::string& group) {
+  return group == "C1" || group.empty() ? RotationGroup{} : symmetry_rotations(group);
+}
+
+SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions& options, const SoftState& coarse,
+                               const std::string& asked, Progress& progress) {
+  const SymmetryOptions& o = options.engine.symmetry;
+  SymmetryChoice out{"C1", coarse, {}, false};
+  Trials all(problem, options, coarse);
+  const bool asked_dihedral = !asked.empty() && asked[0] == 'D';
+  const std::string cyclic = asked_dihedral ? "C" + asked.substr(1) : asked;
+  std::vector<Trial> trials;
+  std::uint64_t key = 2000;
+  const auto add = [&](Trial t) {
+    trials.push_back(std::move(t));
+    ++key;
+    progress.step("symmetry", static_cast<int>(trials.size()), static_cast<int>(trials.size()) + 1);
+  };
+  for (const SymmetryFrame& f : all.hinted(cyclic)) {
+    if (progress.cancelled()) return out;
+    add(all.run(f, key));
+  }
+  if (!problem.planar()) {
+    // Across the axes that are free, the largest first, and across one that was asked for.
+    const std::size_t free = largest_free(trials, options.engine);
+    const bool axis_found = is_cyclic(trials[free].group);
+    if (axis_found) add(all.dihedral(trials[free], key));
+    if (asked_dihedral && named(trials, asked) == nullptr) add(all.dihedral(*named(trials, cyclic), key));
+  }
+  const std::size_t k = largest_free(trials, options.engine);
+  const Trial& chosen = asked.empty() ? trials[k] : *named(trials, asked);
+  const Evidence& plain = trials.front().evidence;
+  for (const Trial& t : trials) {
+    if (t.group == "C1") continue;
+    const Comparison c = compare(plain, t.evidence);
+    out.report.tried.push_back({t.group, t.similarity, c.gain, c.standard_error});
+  }
+  std::stable_sort(out.report.tried.begin(), out.report.tried.end(), [](const auto& a, const auto& b) {
+    return order_of(a.group) > order_of(b.group);
+  });
+  const Comparison c = compare(plain, chosen.evidence);
+  out.group = chosen.group;
+  out.state = chosen.state;
+  out.report.asked = !asked.empty();
+  out.report.group = out.group;
+  out.report.gain = c.gain, out.report.gain_std = c.standard_error;
+  const bool highest = out.group.substr(1) == std::to_string(o.highest_order);
+  const Trial* lower = named(trials, "C" + std::to_string(o.highest_order - 1));
+  out.continuous = asked.empty() && highest && lower != nullptr &&
+                   compare(trials[best_of(trials)].evidence, lower->evidence).better_by(-options.engine.evidence.standard_errors);
+  return out;
+}
+
+}  // namespace polar

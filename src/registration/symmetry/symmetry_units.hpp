@@ -1,0 +1,13 @@
+// How evenly the symmetric units are labelled: registration turns the bright sites of symmetric particles
+// onto one another, and the superparticle then has a hot spot that the structure has not.
+#pragma once
+
+#include "polar/registration/registration.hpp"
+#include "../data/problem.hpp"
+
+namespace polar {
+
+/// Names the units and counts the superparticle's localisations (of accepted views) in them.
+void count_units(const Problem& problem, Registration& registration);
+
+}  // namespace polar

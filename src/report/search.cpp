@@ -1,0 +1,123 @@
+// How the poses were found: competing starts, rounds, time.
+#include <algorithm>
+#include <cmath>
+
+#include "bars.hpp"
+#include "plot.hpp"
+#include "section.hpp"
+#include "text.hpp"
+
+namespace polar::report {
+
+namespace {
+constexpr std::size_t kMostStarts = 24, kMostStages = 24;
+
+Bar start_bar(const StartRecord& start, double value, double error) {
+  return {start.name + (start.won ? " (won)" : ""),
+          value,
+          fixed(value, 4) + (std::isfinite(error) ? " ± " + fixed(error, 4) : ""),
+          value - error,
+          value + error,
+          start.won ? "c2" : "c1"};
+}
+
+void add_starts(const RunRecord& record, Section& s) {
+  if (record.starts.empty()) {
+    s.figures.push_back(absent("starts", "Starts", "No starts competed."));
+    return;
+  }
+  std::vector<Bar> brief, whole;
+  bool errors = false;
+  for (std::size_t i = 0; i < std::min(record.starts.size(), kMostStarts); ++i) {
+    const StartRecord& start = record.starts[i];
+    brief.push_back(start_bar(start, start.held_out, start.held_out_std));
+    if (start.final_held_out != 0)
+      whole.push_back(start_bar(start, start.final_held_out, start.final_held_out_std));
+    errors = errors || std::isfinite(start.held_out_std) || std::isfinite(start.final_held_out_std);
+  }
+  const std::string note =
+      errors ? "Held-out log likelihood a localisation, with standard errors."
+             : "Held-out log likelihood a localisation. The record holds no standard errors: small "
+               "differences may be chance.";
+  s.figures.push_back({"starts", "Starts, after a short run",
+                       bars_svg(brief, "held-out log likelihood of the starts", false), note});
+  if (whole.empty())
+    s.figures.push_back(
+        absent("finalists", "Starts, on all particles", "No second judging on all particles is recorded."));
+  else
+    s.figures.push_back({"finalists", "Starts, on all particles",
+                         bars_svg(whole, "held-out log likelihood on all particles", false), note});
+}
+
+void add_rounds(const RunRecord& record, Section& s) {
+  if (record.history.empty()) {
+    s.figures.push_back(absent("rounds", "Round by round",
+                               "The record holds how many rounds there were (" +
+                                   std::to_string(record.rounds) + "), not what moved or escaped in each."));
+    return;
+  }
+  std::vector<double> round, moved, escaped;
+  for (const RoundRecord& r : record.history) {
+    round.push_back(static_cast<double>(round.size() + 1));
+    moved.push_back(r.moved), escaped.push_back(r.escaped);
+  }
+  std::vector<double> both = moved;
+  both.insert(both.end(), escaped.begin(), escaped.end());
+  Axis up = axis_of(both, "particles");
+  up.low = 0;
+  Plot plot(axis_of(round, "round"), up);
+  plot.line("c1", round, moved), plot.dots("c1", round, moved);
+  plot.line("c2", round, escaped), plot.dots("c2", round, escaped);
+  plot.legend({{"c1", "moved"}, {"c2", "escaped"}});
+  s.figures.push_back({"rounds", "Round by round", plot.svg("particles that moved and escaped in each round"),
+                       "Escaped: to another pose that explains the particle better."});
+}
+
+void add_time(const RunRecord& record, Section& s) {
+  std::vector<Bar> bars;
+  double total = 0;
+  for (std::size_t i = 0; i < record.stage.size(); ++i) {
+    total += record.stage_seconds[i];
+    bars.push_back({record.stage[i], record.stage_seconds[i], duration(record.stage_seconds[i])});
+  }
+  if (bars.size() > kMostStages) bars.resize(kMostStages);
+  if (bars.empty())
+    s.figures.push_back(absent("time", "Time", "The record holds no times."));
+  else
+    s.figures.push_back(
+        {"time", "Time", bars_svg(bars, "seconds a stage"), duration(total) + " in all stages."});
+}
+}  // namespace
+
+Section search_section(const Subject& subject) {
+  const RunRecord& record = subject.record;
+  Section s{"search", "How it was found", {}, {}, {}};
+  s.notes.push_back(counted(static_cast<std::size_t>(std::max(0, record.rounds)), "round") +
+                    (record.converged ? ", converged: " : ", not converged: ") + record.stopped_because +
+                    ".");
+  s.notes.push_back(
+      record.agreement > 0
+          ? "The two best random starts pose " + percent(record.agreement, 1) +
+                " of the particles alike: two searches from unrelated beginnings came to the same answer, "
+                "and no other start was run."
+          : "No agreement of two random starts is recorded: the structure is symmetric, or the starts "
+            "differed and were judged by localisations that none of them had seen.");
+  add_starts(record, s);
+  add_rounds(record, s);
+  add_time(record, s);
+  if (record.symmetry && !record.symmetry->tried_group.empty()) {
+    const SymmetryRecord& y = *record.symmetry;
+    std::vector<Bar> bars;
+    for (std::size_t i = 0; i < y.tried_group.size(); ++i)
+      bars.push_back({y.tried_group[i] + (y.tried_group[i] == y.group ? " (taken)" : ""), y.tried_gain[i],
+                      fixed(y.tried_gain[i], 4) + " ± " + fixed(y.tried_gain_std[i], 4),
+                      y.tried_gain[i] - y.tried_gain_std[i], y.tried_gain[i] + y.tried_gain_std[i],
+                      y.tried_group[i] == y.group ? "c2" : "c1"});
+    s.figures.push_back(
+        {"symmetry", "Groups that were tried", bars_svg(bars, "held-out gain of every symmetry group", false),
+         "Held-out log likelihood a localisation above that without a group, with standard errors."});
+  }
+  return s;
+}
+
+}  // namespace polar::report
