@@ -187,7 +187,7 @@ std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
       covariance = inverse_information(pose_derivatives(frame, view, pose, background, weight).fisher,
                                        data.planar(), ignored);
     }
-    if (!burst.empty()) {
+    if (!burst.empty() && burst[i].size() == view.size()) {
       const BurstSpread spread = spread_of_bursts(frame, view, burst[i], pose, background, weight);
       if (spread.bursts > kPoseParameters) {
         const double share = (covariance * spread.sum).trace() / (data.planar() ? 3 : kPoseParameters);

@@ -167,9 +167,11 @@ class Run {
     out_.symmetry = coarse.symmetry;
     if (!group.empty()) fit = tested(problem, refiner, coarse.group, std::move(fit));
     timed("symmetry tested");
+    const Refiner::AgainstCloud against = refiner.judge_against_cloud(fit);
+    timed("verdict");
     report_views(problem, options_.engine, fit, out_);
     timed("polish");
-    judge_registration(problem, fit.evidence, options_.engine.verdict, out_);
+    judge_registration(against.cloud, against.structure, options_.engine.verdict, out_);
     conclude(problem, coarse, fit);
     return std::move(out_);
   }

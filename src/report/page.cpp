@@ -38,7 +38,7 @@ std::vector<Section> sections_of(const Subject& s) {
 
 std::string report_page(const RunRecord& record, const std::string& name) {
   const Subject subject(record);
-  const Verdict v = verdict(record);
+  const report::Verdict v = verdict(record);
   Data page = page_data(name, "polar", sections_of(subject));
   page.set("state", v.state);
   page.set("word", word_of(v.state));

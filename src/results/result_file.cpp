@@ -174,7 +174,7 @@ void write_run(File& file, const Results& r) {
   file.write_attribute("/run", "normalisation_scale_nm", r.normalisation.scale_nm);
   file.write_strings("/run/stopped_because", {g.stopped_because});
   file.write_string_attribute("/run", "verdict", to_string(g.verdict));
-  file.write_string_attribute("/run", "verdict_reason", g.verdict_reason);
+  file.write_strings("/run/verdict_sentence", {g.verdict_reason});
   file.write_attribute("/run", "structure_gain", g.structure_gain);
   file.write_attribute("/run", "structure_gain_std", g.structure_gain_std);
   std::vector<std::string> warnings = r.particles.table.warnings;

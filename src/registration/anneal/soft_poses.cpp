@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 
 #include "polar/core/constants.hpp"
@@ -67,19 +66,6 @@ SoftPose turned_about(const SoftPose& pose, const Eigen::Vector3f& centre, const
 // Of the quaternion (1, w / 2), normalised: a rotation about w by nearly its length, cheaper than the exponential.
 Eigen::Matrix3f small_turn(const Eigen::Vector3f& w) {
   return Eigen::Quaternionf(1, 0.5f * w.x(), 0.5f * w.y(), 0.5f * w.z()).normalized().toRotationMatrix();
-}
-
-// The rotations under which the template's z lies near where this one puts it in the view, or opposite.
-std::vector<Eigen::Matrix3f> near_axis(const std::vector<Eigen::Matrix3f>& grid, const Eigen::Matrix3f& rotation,
-                                       double cone_rad) {
-  const auto least = static_cast<float>(std::cos(cone_rad));
-  const Eigen::Vector3f axis = rotation.row(2).transpose();
-  std::vector<Eigen::Matrix3f> out;
-  std::copy_if(grid.begin(), grid.end(), std::back_inserter(out), [&](const Eigen::Matrix3f& r) {
-    return std::abs(r.row(2).dot(axis)) >= least;
-  });
-  if (out.empty()) out.push_back(rotation);
-  return out;
 }
 
 Eigen::Vector3f normal3(KeyedRandom& random, double scale, bool flat) {
@@ -387,10 +373,7 @@ void SoftAnnealer::draw_poses(const Points& points, const Sweep& sweep, SoftStat
     const LookupPoints fewer = first_of(few, std::max(std::min(few.count, 24), few.count / 2));
     const double b = sweep.beta * all.count / few.count;  // the few stand for all
     const Looked view{few, fewer, volume, state.sample[i], centre, b};
-    const std::vector<Draw> found =
-        sweep.cone_rad > 0
-            ? candidates(view, near_axis(grid, state.best[i].rotation, sweep.cone_rad), spacing, random)
-            : candidates(view, grid, spacing, random);
+    const std::vector<Draw> found = candidates(view, grid, spacing, random);
     double total = 0;
     const Draw* likeliest = &found.front();
     for (const Draw& d : found) {
@@ -439,19 +422,19 @@ void SoftAnnealer::continue_under(const AnnealStage& stage, std::uint64_t key, S
     const bool early = stage.from_nothing && f < 0.5;
     draw_poses(all_,
                {geometric(stage.first_beta, stage.last_beta, g), early ? options_.rotations / 2 : options_.rotations,
-                early ? options_.first_localisations : options_.localisations, stage.cone_rad,
+                early ? options_.first_localisations : options_.localisations,
                 key * 1024 + static_cast<std::uint64_t>(t)},
                state);
     fuse(geometric(stage.first_width, stage.last_width, g), state);
   }
 }
 
-Evidence SoftAnnealer::judge(SoftState state, std::uint64_t key, double cone_rad) const {
+Evidence SoftAnnealer::judge(SoftState state, std::uint64_t key) const {
   const double width = state.width;
   fuse(fitted_, width, state);
   for (std::uint64_t t = 0; t < 2; ++t) {
     draw_poses(fitted_,
-               {options_.last_beta, options_.rotations, options_.localisations, cone_rad, key * 1024 + 512 + t}, state);
+               {options_.last_beta, options_.rotations, options_.localisations, key * 1024 + 512 + t}, state);
     fuse(fitted_, width, state);
   }
   const LogVolume volume(state.density, state.outlier_fraction, outlier_density(problem_.planar()));

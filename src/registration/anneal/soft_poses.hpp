@@ -41,7 +41,6 @@ struct AnnealStage {
   int sweeps;
   double first_width, last_width, first_beta, last_beta, narrowing;
   bool from_nothing = false;  // few rotations and localisations in the first half
-  double cone_rad = 0;  // a view's axis stays so near to that of its likeliest pose, either way up; 0: anywhere
 };
 
 class SoftAnnealer {
@@ -64,7 +63,7 @@ class SoftAnnealer {
 
   /// Log of the mean over samples of the density of held-out localisations, per localisation; one a view of
   /// `which`. Poses and density are first drawn again from the fitted localisations alone: two sweeps.
-  Evidence judge(SoftState state, std::uint64_t key, double cone_rad = 0) const;
+  Evidence judge(SoftState state, std::uint64_t key) const;
 
   const std::vector<int>& which() const { return which_; }
   const VoxelFrame& frame() const { return frame_; }
@@ -79,7 +78,6 @@ class SoftAnnealer {
   struct Sweep {
     double beta;
     int rotations, localisations;
-    double cone_rad;
     std::uint64_t key;
   };
   void draw_poses(const Points& points, const Sweep& sweep, SoftState& state) const;

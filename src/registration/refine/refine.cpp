@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "../data/template_tools.hpp"
+#include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
+#include "polar/core/so3.hpp"
 #include "polar/fusion/calibration.hpp"
 #include "polar/fusion/discretise.hpp"
 #include "polar/fusion/occupancy.hpp"
@@ -14,7 +16,8 @@ namespace polar {
 
 namespace {
 
-constexpr std::uint32_t kTurnStage = 31;
+constexpr std::uint32_t kTurnStage = 31, kCloudStage = 33;
+constexpr Eigen::Index kCloudCentres = 12000;  // of a template turned any way: its shells err by a few per cent
 constexpr double kPooled = 2;      // spreads of a centre, within which a view tells centres apart no better
 constexpr int kJudgingSweeps = 2;  // without the held-out localisations, before they judge
 
@@ -73,7 +76,9 @@ void Refiner::sweep_blind(Fit& fit, int sweeps) const {
   sweep(first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations)), fit, sweeps, false);
 }
 
-void Refiner::search(Fit& fit) const {
+void Refiner::search(Fit& fit) const { search(problem_.sampled, fit); }
+
+void Refiner::search(const Subsets& subsets, Fit& fit) const {
   NoiseModel noise = fit.noise;
   noise.width = std::sqrt(std::max(noise.width * noise.width,
                                    options_.search_width * options_.search_width -
@@ -87,21 +92,53 @@ void Refiner::search(Fit& fit) const {
   o.grid.step = static_cast<float>(options_.step);
   const Eigen::Matrix3f turn = grid_turn(
       problem_.planar(), KeyedRandom(problem_.seed, static_cast<std::uint64_t>(fit.rounds), kTurnStage));
-  SearchAgainReport report = search_again(problem_.views, problem_.axes, problem_.sampled, fit.mixture, noise,
+  SearchAgainReport report = search_again(problem_.views, problem_.axes, subsets, fit.mixture, noise,
                                           grid_, turn, o, fit.pose);
   fit.margin = std::move(report.margin);
   fit.escaped = static_cast<int>(report.escaped.size());
   ++fit.rounds;
 }
 
-Evidence Refiner::judge(Fit fit) const {
+// Fitted again without the held-out localisations.
+Fit Refiner::blind(Fit fit) const {
   fit.occupancy = std::numeric_limits<double>::infinity();  // a label that judges is missing in what was fitted
   sweep(first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations)), fit, kJudgingSweeps);
+  return fit;
+}
+
+Evidence Refiner::held_out(const Fit& fit) const {
   const FusionData data(problem_.views, problem_.axes, fit.noise, problem_.held_out);
   Evidence evidence = mean_log_likelihood(fit.mixture, data, fit.pose);
   for (std::size_t i = 0; i < evidence.size(); ++i)
     if (problem_.held_out[i].empty()) evidence[i] = NAN;
   return evidence;
+}
+
+Evidence Refiner::judge(const Fit& fit) const { return held_out(blind(fit)); }
+
+Refiner::AgainstCloud Refiner::judge_against_cloud(Fit fit) const {
+  fit = blind(std::move(fit));
+  search(problem_.fitted, fit);
+  fit = blind(std::move(fit));
+  Fit cloud = fit;
+  const Mixture& m = fit.mixture;
+  const Eigen::Index turns =
+      std::clamp(kCloudCentres / std::max<Eigen::Index>(1, m.size()), Eigen::Index{8}, Eigen::Index{256});
+  const Eigen::Vector3d centre = m.centre.cast<double>() * m.weight.cast<double>();
+  Mixture turned = m;
+  turned.centre.resize(3, turns * m.size());
+  turned.weight.resize(turns * m.size());
+  KeyedRandom random(problem_.seed, 0, kCloudStage);
+  for (Eigen::Index t = 0; t < turns; ++t) {
+    const Eigen::Matrix3d r =
+        problem_.planar() ? so3_exp({0, 0, kTwoPi * random.uniform()}) : random.rotation();
+    const Eigen::Vector3f shift = (centre - r * centre).cast<float>();
+    turned.centre.middleCols(t * m.size(), m.size()) = (r.cast<float>() * m.centre).colwise() + shift;
+    turned.weight.segment(t * m.size(), m.size()) = m.weight / static_cast<float>(turns);
+  }
+  sort_into_blocks(turned);
+  cloud.mixture = std::move(turned);
+  return {held_out(fit), held_out(cloud)};
 }
 
 Fit Refiner::rounds(Fit fit, Progress& progress) const {

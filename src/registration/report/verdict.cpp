@@ -1,27 +1,11 @@
 #include "verdict.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-
-#include "../data/template_tools.hpp"
-#include "polar/core/constants.hpp"
 
 namespace polar {
 
 namespace {
-
-constexpr double kOfAShell = 40;  // localisations: a shell's density errs by a sixth
-constexpr double kMostShells = 32;
-constexpr double kOutliers = 0.02;
-
-double distance(const Problem& problem, std::size_t view, std::uint32_t j) {
-  return static_cast<double>(problem.views.view[view].points.col(static_cast<Eigen::Index>(j)).norm());
-}
-
-double volume(double radius, bool planar) {
-  return planar ? kPi * radius * radius : 4 * kPi / 3 * radius * radius * radius;
-}
 
 std::string text(const char* pattern, double a, double b) {
   char out[200];
@@ -31,37 +15,9 @@ std::string text(const char* pattern, double a, double b) {
 
 }  // namespace
 
-Evidence cloud_evidence(const Problem& problem) {
-  std::vector<double> fitted;
-  for (std::size_t i = 0; i < problem.size(); ++i)
-    for (const std::uint32_t j : problem.fitted[i]) fitted.push_back(distance(problem, i, j));
-  Evidence out(problem.size(), NAN);
-  if (fitted.empty()) return out;
-  std::sort(fitted.begin(), fitted.end());
-  const auto shells =
-      static_cast<std::size_t>(std::clamp(static_cast<double>(fitted.size()) / kOfAShell, 1.0, kMostShells));
-  std::vector<double> edge = {0};  // shells of as many localisations each
-  for (std::size_t s = 1; s <= shells; ++s) edge.push_back(fitted[s * fitted.size() / shells - 1]);
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    if (problem.held_out[i].empty()) continue;
-    double total = 0;
-    for (const std::uint32_t j : problem.held_out[i]) {
-      const auto outer = std::lower_bound(edge.begin() + 1, edge.end(), distance(problem, i, j));
-      double density = kOutliers * outlier_density(problem.planar());
-      if (outer != edge.end()) {
-        const double shell = volume(*outer, problem.planar()) - volume(*(outer - 1), problem.planar());
-        density += (1 - kOutliers) / static_cast<double>(shells) / std::max(shell, 1e-12);
-      }
-      total += std::log(density);
-    }
-    out[i] = total / static_cast<double>(problem.held_out[i].size());
-  }
-  return out;
-}
-
-void judge_registration(const Problem& problem, const Evidence& evidence, const VerdictOptions& options,
+void judge_registration(const Evidence& cloud, const Evidence& evidence, const VerdictOptions& options,
                         Registration& out) {
-  const Comparison c = compare(cloud_evidence(problem), evidence);
+  const Comparison c = compare(cloud, evidence);
   out.structure_gain = c.gain, out.structure_gain_std = c.standard_error;
   if (!c.better_by(options.cloud_standard_errors)) {
     out.verdict = Verdict::none;

@@ -137,15 +137,4 @@ SymmetryFrame best_frame(const SelfSimilarity& t, const std::string& group, doub
   return refined(t, group, best);
 }
 
-std::vector<Pose> half_turns(const SelfSimilarity& t, double worthwhile) {
-  const Pose half{so3_exp(kPi * Axis::UnitZ()), Eigen::Vector3d::Zero()};
-  std::vector<Pose> out;
-  for (const Axis& axis : best_axes(t, 2)) {
-    const SymmetryFrame f = refined(t, "C2", swept(t, "C2", axis));
-    if (f.similarity >= worthwhile)
-      out.push_back(f.canonical_from_template.inverse() * half * f.canonical_from_template);
-  }
-  return out;
-}
-
 }  // namespace polar

@@ -19,8 +19,4 @@ struct SymmetryFrame {
 /// has no prospect of a similarity of `worthwhile` is not refined.
 SymmetryFrame best_frame(const SelfSimilarity& of_template, const std::string& group, double worthwhile);
 
-/// Motions of the template by half a turn after which it looks most like itself: at most three, of a
-/// similarity of at least `worthwhile`.
-std::vector<Pose> half_turns(const SelfSimilarity& of_template, double worthwhile);
-
 }  // namespace polar

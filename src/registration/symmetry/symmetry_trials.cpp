@@ -102,7 +102,7 @@ class Trials {
  private:
   AnnealStage stage(int sweeps) const {
     const AnnealOptions& a = options_.anneal;
-    return {sweeps, o_.first_width, a.last_width, o_.first_beta, a.last_beta, o_.narrowing, false, 0};
+    return {sweeps, o_.first_width, a.last_width, o_.first_beta, a.last_beta, o_.narrowing, false};
   }
   SoftState in_frame(const Pose& canonical_from_template) const {
     SoftState state = coarse_;

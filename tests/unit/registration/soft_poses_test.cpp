@@ -13,7 +13,7 @@ namespace {
 constexpr double kRight = 0.26;  // rad
 
 AnnealStage whole(const AnnealOptions& o) {
-  return {o.sweeps, o.first_width, o.last_width, o.first_beta, o.last_beta, o.narrowing, true, 0};
+  return {o.sweeps, o.first_width, o.last_width, o.first_beta, o.last_beta, o.narrowing, true};
 }
 
 std::vector<Eigen::Matrix3d> best_of(const SoftState& s) {
@@ -54,7 +54,7 @@ TEST(SoftAnnealer, aTiltPriorHoldsEveryPose) {
   const PosePrior prior{0.1, false};
   const SoftAnnealer annealer(p.plain, p.plain.all, {}, prior);
   SoftState state = annealer.random_start(1);
-  annealer.anneal({6, 0.2, 0.1, 0.1, 1, 0.8, true, 0}, 1, state);
+  annealer.anneal({6, 0.2, 0.1, 0.1, 1, 0.8, true}, 1, state);
   for (const SoftPose& b : state.best) EXPECT_GT(b.rotation(2, 2), std::cos(0.5));
 }
 
@@ -63,7 +63,7 @@ TEST(SoftAnnealer, planarPosesStayInThePlane) {
   const Problems p = make_problems(scene.views, {}, 1);
   const SoftAnnealer annealer(p.plain, p.plain.all, {}, {});
   SoftState state = annealer.random_start(1);
-  annealer.anneal({6, 0.2, 0.1, 0.1, 1, 0.8, true, 0}, 1, state);
+  annealer.anneal({6, 0.2, 0.1, 0.1, 1, 0.8, true}, 1, state);
   for (const auto& samples : state.sample)
     for (const SoftPose& s : samples) {
       EXPECT_NEAR(s.rotation(2, 2), 1, 1e-5);
@@ -78,7 +78,7 @@ TEST(SoftAnnealer, anyNumberOfThreadsGivesTheSameBits) {
     const ThreadLimit limit(threads);
     const SoftAnnealer annealer(p.plain, p.plain.all, {}, {});
     SoftState state = annealer.random_start(1);
-    annealer.anneal({5, 0.2, 0.1, 0.2, 1, 0.8, true, 0}, 1, state);
+    annealer.anneal({5, 0.2, 0.1, 0.2, 1, 0.8, true}, 1, state);
     return state;
   };
   const SoftState one = run(1), three = run(3);
