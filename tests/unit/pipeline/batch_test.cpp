@@ -111,6 +111,7 @@ TEST_F(BatchTest, FaultsOfTheConfigurationAreFoundBeforeAnythingRuns) {
   expect_fault("datasets: [{name: a/b, input: x}]\n", "expected the name of a folder");
   expect_fault("datasets: [{name: .., input: x}]\n", "expected the name of a folder");
   expect_fault("datasets: [{name: summary.csv, input: x}]\n", "expected the name of a folder");
+  expect_fault("datasets: [{name: report.html, input: x}]\n", "expected the name of a folder");
   expect_fault("datasets: [{name: a, input: x}, {name: a, input: y}]\n", "two data sets are called 'a'");
   expect_fault("datasets: [{folders: nowhere/*, input: x}]\n", "no folder matches");
   expect_fault("defaults: {registration: {sede: 2}}\ndatasets: [{name: a, input: x}]\n",
@@ -154,6 +155,7 @@ TEST_F(BatchTest, WritesWhatARunWritesAndTheTables) {
   EXPECT_THAT(content("batch/conditions.csv"), HasSubstr("\naccepted_share,wild,,2,,1,1,1\n"));
   EXPECT_THAT(content("batch/conditions.csv"), HasSubstr("\naccepted_share,wild,mutant,2,1,0,,\n"));
   EXPECT_EQ(state()["bootstrap"]["draws"], 10000);
+  EXPECT_THAT(content("batch/report.html"), HasSubstr("./wild_2/report.html"));
 }
 
 TEST_F(BatchTest, OneThatFailsStopsNoOther) {
