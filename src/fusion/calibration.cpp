@@ -41,8 +41,7 @@ Subsets at_most(const Subsets& held_out, std::size_t most) {
   return few;
 }
 
-}  // namespace
-
+// Do lateral and axial uncertainties differ enough to be calibrated apart?
 bool has_axis(const Views& views, const std::vector<Eigen::Vector3f>& axes) {
   if (views.planar) return false;
   std::vector<float> ratio;
@@ -54,9 +53,11 @@ bool has_axis(const Views& views, const std::vector<Eigen::Vector3f>& axes) {
   return !ratio.empty() && upper_median(std::move(ratio)) > kAxisRatio;
 }
 
+}  // namespace
+
 CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3f>& axes,
                             const Subsets& held_out, const Mixture& mixture, const std::vector<Pose>& poses,
-                            const NoiseModel& start, const std::vector<std::vector<float>>& visibility) {
+                            const NoiseModel& start) {
   const Subsets few = at_most(held_out, kMostLocalisations);
   double localisations = 0;
   std::vector<int> which;
@@ -67,12 +68,9 @@ CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3
     which.push_back(static_cast<int>(i));
     pose.push_back(poses[i]);
   }
-  CalibrationReport report{start, 0};
-  if (which.empty()) return report;
+  if (which.empty()) return {start};
   const auto mean = [&](const NoiseModel& noise) {
-    FusionData data(views, axes, noise, few, which);
-    for (std::size_t k = 0; k < which.size() && !visibility.empty(); ++k)
-      data.set_visibility(k, visibility[static_cast<std::size_t>(which[k])]);
+    const FusionData data(views, axes, noise, few, which);
     const std::vector<double> per_view = mean_log_likelihood(mixture, data, pose);
     double total = 0;
     for (std::size_t k = 0; k < which.size(); ++k)
@@ -91,9 +89,7 @@ CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3
   Parameters p;
   first(start.lateral_factor, start.lateral_extra, p);
   if (has_axis(views, axes)) first(start.axial_factor, start.axial_extra, p);
-  report.noise = model(nelder_mead(p, {kFirstStep, kTolerance, kMostEvaluations}, cost), start);
-  report.log_likelihood = mean(report.noise);
-  return report;
+  return {model(nelder_mead(p, {kFirstStep, kTolerance, kMostEvaluations}, cost), start)};
 }
 
 }  // namespace polar

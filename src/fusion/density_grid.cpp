@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mixture_kernel_choice.hpp"
+#include "mixture_kernel.hpp"
 
 namespace polar {
 
 namespace {
 
 constexpr std::size_t kBlock = kernel::kBlock;
+
+// One for every machine: which mode of a posterior is drawn must not hang on how a processor rounds. Look-ups
+// wait for the cache, so wider registers would save a twentieth.
+const kernel::MixtureKernel& look_up_kernel() { return kernel::mixture_kernel_portable(); }
 
 // Kernel of a Gaussian in voxels, normalised; one number where it is narrower than can be drawn.
 std::vector<float> gaussian_taps(float sigma) {
@@ -47,7 +51,8 @@ void convolve(const std::vector<float>& in, const std::vector<float>& tap, std::
 }  // namespace
 
 VoxelFrame::VoxelFrame(double reach, double voxel_size, bool planar) {
-  const int across = (static_cast<int>(std::ceil(2 * reach / voxel_size)) + 3) / 4 * 4;  // rows of 16 in a slab
+  const int across =
+      (static_cast<int>(std::ceil(2 * reach / voxel_size)) + 3) / 4 * 4;  // rows of 16 in a slab
   dim[0] = dim[1] = across, dim[2] = planar ? 1 : across;
   voxel = static_cast<float>(voxel_size);
   const float half = 0.5f * voxel * static_cast<float>(across - 1);
@@ -165,13 +170,13 @@ LogVolume::LogVolume(const DensityGrid& density, double outlier_fraction, double
   scale_ = 32000.0f / std::max(1.0f, std::log(highest) - zero_);
   p.resize((p.size() + kBlock - 1) / kBlock * kBlock, background);
   value_.resize(p.size() + 1);  // a look-up reads the number after a voxel too
-  mixture_kernel().quantise_log(p.data(), static_cast<int>(p.size()), zero_, scale_, value_.data());
+  look_up_kernel().quantise_log(p.data(), static_cast<int>(p.size()), zero_, scale_, value_.data());
 }
 
 void LogVolume::scores(const LookupPoints& points, const Eigen::Matrix3f& rotation,
                        const Eigen::Vector3f* translation, std::size_t shifts, float* score) const {
   constexpr std::size_t kBatch = kernel::kMostPoints, kShifts = 64;
-  const kernel::MixtureKernel& kernel = mixture_kernel();
+  const kernel::MixtureKernel& kernel = look_up_kernel();
   const float inverse = 1 / frame_.voxel;
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r = rotation * inverse;
   float u[kBatch], v[kBatch], w[kBatch];

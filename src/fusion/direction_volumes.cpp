@@ -106,7 +106,7 @@ int directions_for(const SigmaClasses& classes, bool planar) {
 }
 
 DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions,
-                                   bool planar, const BackgroundFactor& background_factor) {
+                                   bool planar) {
   direction_ = spiral_directions<float>(directions, Spiral::hemisphere);  // e and -e blur alike
   float sharpest = INFINITY;
   for (const AxialSigma& s : classes.sigma)
@@ -129,7 +129,6 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
   const float highest = kTwoPiF * sharpest * sharpest * (planar ? 1 : std::sqrt(kTwoPiF) * sharpest);
   scale_ = 32000.0f / std::max(1.0f, std::log(1.0f / highest + background) - zero_);
 
-  const std::vector<float> empty = empty_volume(background, background_factor);
   const auto inlier = static_cast<float>(1 - mixture.outlier_fraction);
   parallel_for(direction_.size() * classes.sigma.size(), [&](std::size_t v) {
     const AxialSigma sigma = classes.sigma[v / direction_.size()];
@@ -142,7 +141,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
       c = (2 * lat2 + ax2) / 3 * Eigen::Matrix3f::Identity();
     const float norm =
         planar ? 1 / (kTwoPiF * lat2) : 1 / std::sqrt(kTwoPiF * kTwoPiF * kTwoPiF * c.determinant());
-    std::vector<float> density = empty;
+    std::vector<float> density(stride_ + kernel::kBlock, background);  // add_gaussian touches a little more
     const VoxelGaussian gaussian(c, voxel_, kReach, planar);
     for (Eigen::Index k = 0; k < mixture.size(); ++k) {
       const float amplitude = inlier * mixture.weight[k] * norm;
@@ -153,17 +152,6 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
     mixture_kernel().quantise_log(density.data(), static_cast<int>(stride_), zero_, scale_,
                                   value_.data() + v * stride_);
   });
-}
-
-std::vector<float> DirectionVolumes::empty_volume(float density, const BackgroundFactor& factor) const {
-  std::vector<float> out(stride_ + kernel::kBlock, density);  // add_gaussian touches a little more
-  if (!factor) return out;
-  float* at = out.data();
-  for (int z = 0; z < dim_[2]; ++z)
-    for (int y = 0; y < dim_[1]; ++y)
-      for (int x = 0; x < dim_[0]; ++x)
-        *at++ *= factor(origin_ + voxel_ * Eigen::Vector3i(x, y, z).cast<float>());
-  return out;
 }
 
 const std::int16_t* DirectionVolumes::volume(int sigma_class, int direction) const {

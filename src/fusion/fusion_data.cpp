@@ -1,7 +1,5 @@
 #include "polar/fusion/fusion_data.hpp"
 
-#include <optional>
-
 #include "fusion_data_impl.hpp"
 #include "polar/core/parallel.hpp"
 #include "view_likelihood.hpp"
@@ -10,20 +8,11 @@ namespace polar {
 
 namespace {
 constexpr std::size_t kBlock = 4;  // views a task
-
-// The template's cuts, where the views are.
-std::optional<CutTable> cuts_of(const Mixture& mixture, const FusionData& data) {
-  return data.cut() ? std::optional<CutTable>(std::in_place, mixture) : std::nullopt;
-}
-
-CutView cut_view(const std::optional<CutTable>& cuts, const FusionData& data, std::size_t view) {
-  return cuts ? CutView{&*cuts, data.impl().reach[view]} : CutView{};
-}
 }  // namespace
 
 FusionData::FusionData(const Views& views, const std::vector<Eigen::Vector3f>& axes, const NoiseModel& noise,
                        const Subsets& subsets, const std::vector<int>& which)
-    : noise_(noise), impl_(new Impl) {
+    : planar_(noise.planar), impl_(new Impl) {
   const std::size_t n = which.empty() ? views.view.size() : which.size();
   impl_->view.resize(n);
   impl_->visibility.resize(n);
@@ -43,23 +32,11 @@ FusionData& FusionData::operator=(FusionData&&) noexcept = default;
 
 std::size_t FusionData::size() const { return impl_->view.size(); }
 
-void FusionData::set_visibility(std::size_t view, std::vector<float> factor) {
-  impl_->visibility[view] = std::move(factor);
-}
-
 void FusionData::set_visibility(std::vector<std::vector<float>> factor) {
   impl_->visibility = std::move(factor);
 }
 
 const std::vector<float>& FusionData::visibility(std::size_t view) const { return impl_->visibility[view]; }
-
-void FusionData::set_cut(const std::vector<ViewReach>& reach, const std::vector<int>& which) {
-  impl_->reach.clear();
-  for (std::size_t k = 0; k < size(); ++k)
-    impl_->reach.push_back(&reach[which.empty() ? k : static_cast<std::size_t>(which[k])]);
-}
-
-bool FusionData::cut() const { return !impl_->reach.empty(); }
 
 const float* view_weight(const FusionData& data, std::size_t view, const float* weight,
                          std::vector<float>& buffer) {
@@ -73,7 +50,6 @@ const float* view_weight(const FusionData& data, std::size_t view, const float* 
 std::vector<double> mean_log_likelihood(const Mixture& mixture, const FusionData& data,
                                         const std::vector<Pose>& template_from_view) {
   const BlockedMixture blocked(mixture);
-  const std::optional<CutTable> cuts = cuts_of(mixture, data);
   std::vector<double> mean(data.size(), 0.0);
   parallel_blocks(data.size(), kBlock, [&](std::size_t begin, std::size_t end, std::size_t) {
     ViewFrame frame(blocked);
@@ -84,8 +60,6 @@ std::vector<double> mean_log_likelihood(const Mixture& mixture, const FusionData
       mean[i] = log_likelihood(frame, view, template_from_view[i].inverse(), blocked.background(),
                                view_weight(data, i, blocked.weight(), buffer)) /
                 static_cast<double>(view.size());
-      if (const auto cut = cut_view(cuts, data, i).likeliest(template_from_view[i]))
-        mean[i] += static_cast<double>(CutTable::gain(cut->visible, 1));
     }
   });
   return mean;
@@ -94,7 +68,6 @@ std::vector<double> mean_log_likelihood(const Mixture& mixture, const FusionData
 double refine_poses(const Mixture& mixture, const FusionData& data, std::vector<Pose>& template_from_view,
                     int evaluations) {
   const BlockedMixture blocked(mixture);
-  const std::optional<CutTable> cuts = cuts_of(mixture, data);
   return ordered_sum(data.size(), kBlock, 0.0, [&](std::size_t begin, std::size_t end) {
     ViewFrame frame(blocked);
     std::vector<float> buffer;
@@ -103,8 +76,7 @@ double refine_poses(const Mixture& mixture, const FusionData& data, std::vector<
       if (data.impl().view[i].empty()) continue;
       const RefinedPose refined =
           refine_pose(frame, data.impl().view[i], template_from_view[i].inverse(), blocked.background(),
-                      data.planar(), evaluations, view_weight(data, i, blocked.weight(), buffer),
-                      cut_view(cuts, data, i).likeliest(template_from_view[i]));
+                      data.planar(), evaluations, view_weight(data, i, blocked.weight(), buffer));
       template_from_view[i] = refined.view_from_template.inverse();
       total += refined.log_likelihood;
     }

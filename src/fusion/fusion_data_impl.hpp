@@ -10,7 +10,6 @@ namespace polar {
 struct FusionData::Impl {
   std::vector<KernelLocalisations> view;
   std::vector<std::vector<float>> visibility;
-  std::vector<const ViewReach*> reach;  // where views are cut
 };
 
 /// Weights of a view's centres with its visibility, or null when it has none; `buffer` holds them.

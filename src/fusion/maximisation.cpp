@@ -111,22 +111,6 @@ void average_over(const std::vector<std::vector<Eigen::Index>>& orbits, const Ro
   }
 }
 
-// Weighs every centre by how seldom views could show it.
-void weigh_by_exposure(const FusionData& data, const std::vector<Pose>& pose, Mixture& mixture) {
-  const CutTable cuts(mixture);
-  Eigen::RowVectorXf exposure = Eigen::RowVectorXf::Zero(mixture.size());
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const Cut cut = cuts.likeliest(*data.impl().reach[i], pose[i]);
-    const Eigen::Vector3f normal = (pose[i].rotation * cut.normal.cast<double>()).cast<float>();
-    const float offset = cut.offset + normal.dot(pose[i].translation.cast<float>());
-    exposure.array() += ((normal.transpose() * mixture.centre).array() <= offset).cast<float>() /
-                        std::max(cut.visible, kLeastShown);
-  }
-  const float least = 0.1f * exposure.maxCoeff();
-  mixture.weight.array() /= exposure.transpose().array().max(least);
-  mixture.weight /= mixture.weight.sum();
-}
-
 // Sows the weakest centres anew beside strong ones, each strong one used once a step.
 void sow_again(Mixture& mixture, const std::vector<double>& strength, const MaximisationOptions& options) {
   const std::size_t n = strength.size();
@@ -161,7 +145,6 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
                                            : orbits(mixture.centre, options.group);
   average_over(orbit, options.group, centres, sums);
 
-  const bool use_support = options.support && !data.cut();  // a part that few views show is no strand
   std::vector<double> strength(centres, 0.0);
   double total_weight = 0;
   for (std::size_t k = 0; k < centres; ++k) {
@@ -171,10 +154,8 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
     const double support = sums.share_sq[k] > 0 ? sums.share[k] * sums.share[k] / sums.share_sq[k] /
                                                       static_cast<double>(data.size())
                                                 : 0;
-    strength[k] = use_support ? s(0) * support : s(0);
-    const double weight = options.keep_weights
-                              ? static_cast<double>(mixture.weight[col])
-                              : (options.free_weights ? s(0) : 1.0) * (use_support ? support * support : 1.0);
+    strength[k] = options.support ? s(0) * support : s(0);
+    const double weight = (options.free_weights ? s(0) : 1.0) * (options.support ? support * support : 1.0);
     mixture.weight[col] = static_cast<float>(weight);
     total_weight += weight;
     Eigen::Matrix3d a;
@@ -189,13 +170,12 @@ MaximisationReport maximise(Mixture& mixture, const FusionData& data, const std:
   mixture.outlier_fraction = std::clamp(
       (sums.localisations - sums.inliers + kPseudoOutliers) / (sums.localisations + kPseudoLocalisations),
       options.smallest_outlier_fraction, 0.95);
-  if (data.cut()) weigh_by_exposure(data, poses, mixture);
   if (options.group.empty())
     sow_again(mixture, strength, options);
   else
     snap_to_orbits(mixture, options.group, orbit);
   sort_into_blocks(mixture);
-  return {sums.log_likelihood, sums.localisations};
+  return {sums.log_likelihood};
 }
 
 }  // namespace polar

@@ -98,8 +98,8 @@ double likeliest_strength(const Mixture& mixture, const FusionData& data, const 
     std::vector<float> sums(kernel::kSums * padded, 0.0f), scratch(padded), inlier(view.size()),
         density(view.size());
     mixture_kernel().accumulate(frame.at(poses[i].inverse(), blocked.weight()), view.data(),
-                                static_cast<int>(view.size()), blocked.background(), sums.data(), inlier.data(),
-                                density.data(), scratch.data());
+                                static_cast<int>(view.size()), blocked.background(), sums.data(),
+                                inlier.data(), density.data(), scratch.data());
     for (std::size_t k = 0; k < centres; ++k) count[i][patch[k]] += static_cast<double>(sums[k]);
   });
   const auto evidence = [&](double strength) {

@@ -174,18 +174,18 @@ std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
       const Pose next = least_squares(terms, pose, data.planar());
       const double there = log_likelihood(frame, view, next, background, weight);
       if (!(there > best)) break;
-      best = there, pose = next, result.improved = true;
+      best = there, pose = next;
     }
     const RefinedPose refined = refine_pose(frame, view, pose, background, data.planar(), 4, weight);
     pose = refined.view_from_template;
     result.template_from_view = pose.inverse();
     result.log_likelihood = refined.log_likelihood / static_cast<double>(view.size());
+    bool positive = false;
     Matrix6 covariance = inverse_information(observed_information(frame, view, pose, background, weight),
-                                             data.planar(), result.information_positive);
-    if (!result.information_positive) {
-      bool ignored = false;
+                                             data.planar(), positive);
+    if (!positive) {
       covariance = inverse_information(pose_derivatives(frame, view, pose, background, weight).fisher,
-                                       data.planar(), ignored);
+                                       data.planar(), positive);
     }
     if (!burst.empty() && burst[i].size() == view.size()) {
       const BurstSpread spread = spread_of_bursts(frame, view, burst[i], pose, background, weight);

@@ -1,7 +1,6 @@
 #include "polar/fusion/pose_search.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "polar/flames/local_minima.hpp"
@@ -10,29 +9,8 @@ namespace polar {
 
 namespace {
 
-// Scores of a view at translations, with what its cut gains.
-class Scorer {
- public:
-  Scorer(const DirectionVolumes& volumes, const CutView& cut) : volumes_(volumes), cut_(cut) {}
-
-  void operator()(const SearchView& view, int direction, const Eigen::Matrix3f& rotation,
-                  const std::vector<Eigen::Vector3f>& translation, float* score) {
-    volumes_.scores(view, direction, rotation, translation, score);
-    if (cut_.cuts == nullptr) return;
-    share_.resize(translation.size());
-    cut_.cuts->visible(*cut_.reach, rotation, translation, share_.data());
-    for (std::size_t t = 0; t < share_.size(); ++t)
-      score[t] += CutTable::gain(share_[t], static_cast<std::size_t>(view.count));
-  }
-
- private:
-  const DirectionVolumes& volumes_;
-  CutView cut_;
-  std::vector<float> share_;
-};
-
-void climb(const DirectionVolumes& volumes, Scorer& scorer, const SearchView& view,
-           const Eigen::Matrix3f& rotation, float step, Eigen::Vector3f& translation, float& best) {
+void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen::Matrix3f& rotation,
+           float step, Eigen::Vector3f& translation, float& best) {
   constexpr int kMostSteps = 6;
   const int direction = volumes.direction_of(view, rotation);
   std::vector<float> there;
@@ -44,7 +22,7 @@ void climb(const DirectionVolumes& volumes, Scorer& scorer, const SearchView& vi
       for (std::size_t a = 1; a < shifts.size(); ++a)
         around.push_back(here + shifts[a]);  // the first is none
       there.resize(around.size());
-      scorer(view, direction, rotation, around, there.data());
+      volumes.scores(view, direction, rotation, around, there.data());
       for (std::size_t a = 0; a < around.size(); ++a)
         if (there[a] > best) best = there[a], translation = around[a];
       if (translation == here) break;
@@ -61,26 +39,8 @@ std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar) {
   return out;
 }
 
-std::vector<Eigen::Vector3f> shifts_within(float reach, float step, bool planar) {
-  return reach > step ? lattice_shifts(reach, step, planar) : axis_shifts(step, planar);
-}
-
-std::vector<Eigen::Vector3f> lattice_shifts(double reach, double spacing, bool planar) {
-  std::vector<Eigen::Vector3f> out;
-  const int n = static_cast<int>(std::ceil(reach / spacing));
-  for (int x = -n; x <= n; ++x)
-    for (int y = -n; y <= n; ++y)
-      for (int z = planar ? 0 : -n; z <= (planar ? 0 : n); ++z) {
-        const Eigen::Vector3f shift = static_cast<float>(spacing) * Eigen::Vector3i(x, y, z).cast<float>();
-        if (shift.norm() <= static_cast<float>(reach)) out.push_back(shift);
-      }
-  return out;
-}
-
 GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, const SearchGrid& grid,
-                      const Eigen::Matrix3f& turn, const SearchOptions& options, const SearchView* closer,
-                      const CutView& cut) {
-  Scorer scorer(volumes, cut);
+                      const Eigen::Matrix3f& turn, const SearchOptions& options) {
   const std::size_t n = grid.rotation.size();
   GridScores out;
   out.log_likelihood.resize(n);
@@ -95,7 +55,7 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
   std::vector<float> there(options.translation.size());
   for (std::size_t d = 0; d < by_direction.size(); ++d)
     for (const std::size_t i : by_direction[d]) {
-      scorer(view, static_cast<int>(d), turned[i], options.translation, there.data());
+      volumes.scores(view, static_cast<int>(d), turned[i], options.translation, there.data());
       const auto best = std::max_element(there.begin(), there.end());  // the first of equal ones
       out.log_likelihood[i] = *best;
       out.translation[i] = options.translation[static_cast<std::size_t>(best - there.begin())];
@@ -110,29 +70,22 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
                                   sb = out.log_likelihood[static_cast<std::size_t>(b)];
                       return sa > sb || (sa == sb && a < b);
                     });
-  if (closer != nullptr) std::fill(out.log_likelihood.begin(), out.log_likelihood.end(), -INFINITY);
   for (std::size_t k = 0; k < few; ++k) {
     const auto i = static_cast<std::size_t>(order[k]);
-    float& best = out.log_likelihood[i];
-    if (closer != nullptr)
-      scorer(*closer, volumes.direction_of(*closer, turned[i]), turned[i], {out.translation[i]}, &best);
-    climb(volumes, scorer, closer != nullptr ? *closer : view, turned[i], options.step, out.translation[i],
-          best);
+    climb(volumes, view, turned[i], options.step, out.translation[i], out.log_likelihood[i]);
   }
   return out;
 }
 
-std::vector<Basin> basins(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn,
-                          int most) {
+std::vector<Pose> basins(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn,
+                         int most) {
   std::vector<float> cost(scores.log_likelihood.size());
   std::transform(scores.log_likelihood.begin(), scores.log_likelihood.end(), cost.begin(),
                  [](float s) { return -s; });
-  std::vector<Basin> out;
+  std::vector<Pose> out;
   for (const int i : local_minima(cost, grid.graph, most)) {
     const auto k = static_cast<std::size_t>(i);
-    if (!std::isfinite(scores.log_likelihood[k])) continue;
-    out.push_back({{(grid.rotation[k] * turn).cast<double>(), scores.translation[k].cast<double>()},
-                   scores.log_likelihood[k]});
+    out.push_back({(grid.rotation[k] * turn).cast<double>(), scores.translation[k].cast<double>()});
   }
   return out;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <optional>
 
 #include "polar/core/parallel.hpp"
 #include "polar/core/so3.hpp"
@@ -45,15 +44,14 @@ std::vector<RefinedPose> within(double doubt, const std::vector<RefinedPose>& ca
 
 // The best few basins. Under a group most of them are images of one: as many are added that are not, so that
 // the second best is known too. The images stay: each is seen from its own grid point, one of them well.
-std::vector<Basin> basins_modulo(const GridScores& scores, const SearchGrid& grid,
-                                 const Eigen::Matrix3f& turn, const SearchAgainOptions& options) {
+std::vector<Pose> basins_modulo(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn,
+                                const SearchAgainOptions& options) {
   if (options.group.empty()) return basins(scores, grid, turn, options.basins);
   const auto few = static_cast<std::size_t>(options.basins);
-  std::vector<Basin> out;
-  for (const Basin& b : basins(scores, grid, turn, options.basins * static_cast<int>(options.group.size()))) {
-    const bool image = std::any_of(out.begin(), out.end(), [&](const Basin& o) {
-      return angle_modulo(options.group, b.template_from_view.rotation, o.template_from_view.rotation) <
-             options.escape_rad;
+  std::vector<Pose> out;
+  for (const Pose& b : basins(scores, grid, turn, options.basins * static_cast<int>(options.group.size()))) {
+    const bool image = std::any_of(out.begin(), out.end(), [&](const Pose& o) {
+      return angle_modulo(options.group, b.rotation, o.rotation) < options.escape_rad;
     });
     if (out.size() < few || (!image && out.size() < 2 * few)) out.push_back(b);
   }
@@ -91,36 +89,23 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
   const SigmaClasses classes = sigma_classes(views, axes, noise, options.sigma_classes);
   const DirectionVolumes volumes(mixture, classes, directions_for(classes, noise.planar), noise.planar);
   const BlockedMixture blocked(mixture);
-  std::optional<CutTable> cuts;
-  if (options.reach != nullptr) cuts.emplace(mixture);
   std::vector<Outcome> outcome(views.view.size());
   parallel_for(views.view.size(), [&](std::size_t i) {
     const std::vector<std::uint32_t> few = first_of(subset[i], options.most_localisations);
     outcome[i].pose = poses[i];
     if (few.empty()) return;
-    const auto seen = [&](const std::vector<std::uint32_t>& which) {
-      return search_view(views.view[i], axes[i], noise, classes, which);
-    };
-    const SearchView all = seen(few);
-    const CutView cut = cuts ? CutView{&*cuts, &(*options.reach)[i]} : CutView{};
     ViewFrame frame(blocked);
     const auto uphill = [&](const KernelLocalisations& of, const Pose& start, int evaluations) {
-      return refine_pose(frame, of, start, blocked.background(), noise.planar, evaluations, nullptr,
-                         cut.likeliest(start.inverse()));
+      return refine_pose(frame, of, start, blocked.background(), noise.planar, evaluations);
     };
-    const auto coarse = static_cast<std::size_t>(options.coarse_localisations);
-    const bool in_two_steps = coarse > 0 && coarse < few.size();
-    const GridScores scores =
-        in_two_steps ? score_grid(volumes, seen({few.begin(), few.begin() + options.coarse_localisations}),
-                                  grid, turn, options.grid, &all, cut)
-                     : score_grid(volumes, all, grid, turn, options.grid, nullptr, cut);
+    const GridScores scores = score_grid(volumes, search_view(views.view[i], axes[i], noise, classes, few),
+                                         grid, turn, options.grid);
     const KernelLocalisations localisations = kernel_localisations(views.view[i], axes[i], noise, few);
     const auto refined = [&](const Pose& start) {
       return uphill(localisations, start.inverse(), options.evaluations);
     };
     std::vector<RefinedPose> candidates;
-    for (const Basin& basin : basins_modulo(scores, grid, turn, options))
-      candidates.push_back(refined(basin.template_from_view));
+    for (const Pose& basin : basins_modulo(scores, grid, turn, options)) candidates.push_back(refined(basin));
     const RefinedPose current = refined(poses[i]);
     outcome[i] = best_of(candidates, current, options, few.size());
     const bool clear = outcome[i].margin * static_cast<double>(few.size()) >= options.doubt;

@@ -14,7 +14,6 @@ namespace {
 constexpr int kBatch = 256;  // localisations whose moments fit the first-level cache
 constexpr double kFirstDamping = 0.1;
 constexpr double kLargestDamping = 1e6;
-constexpr double kEdge = 0.02;       // of a cut, particle radii: half of what its smooth edge spans
 constexpr double kConverged = 1e-5;  // step in radians and particle radii: a hundredth of any real accuracy
 
 // Score of one localisation: d ln p / d(w, v). Moments are sums over centres of density-weighted 1, mu, mu
@@ -97,42 +96,14 @@ PoseDerivatives pose_derivatives(ViewFrame& frame, const KernelLocalisations& vi
   return d;
 }
 
-void add_cut(ViewFrame& frame, const Pose& pose, const Cut& cut, std::size_t localisations,
-             PoseDerivatives& d) {
-  const Eigen::Vector3d normal = cut.normal.cast<double>();
-  const double offset = cut.offset, worth = static_cast<double>(localisations);
-  const kernel::Centres& c = frame.at(pose);
-  const int n = c.blocks * kernel::kBlock;
-  double all = 0, shown = 0;
-  Vector6 slope = Vector6::Zero();
-  for (int k = 0; k < n; ++k) {
-    if (c.weight[k] == 0) continue;
-    const Eigen::Vector3d y(c.x[k], c.y[k], c.z[k]);
-    const double w = c.weight[k], inside = 1 / (1 + std::exp((normal.dot(y) - offset) / kEdge));
-    all += w, shown += w * inside;
-    const double there = w * inside * (1 - inside) / kEdge;
-    slope.head<3>() -= there * y.cross(normal);
-    slope.tail<3>() -= there * normal;
-  }
-  const double share = shown / all;
-  d.log_likelihood -= worth * std::log(std::max(share, static_cast<double>(kLeastShown)));
-  if (share < static_cast<double>(kLeastShown)) return;
-  slope /= shown;
-  d.gradient -= worth * slope;
-  d.fisher += worth * slope * slope.transpose();
-}
-
 Pose perturbed(const Pose& pose, const Vector6& step) {
   return Pose{so3_exp(step.head<3>()), step.tail<3>()} * pose;
 }
 
 RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const Pose& start,
-                        float background, bool planar, int max_evaluations, const float* weight,
-                        const std::optional<Cut>& cut) {
+                        float background, bool planar, int max_evaluations, const float* weight) {
   const auto derivatives = [&](const Pose& pose) {
-    PoseDerivatives d = pose_derivatives(frame, view, pose, background, weight);
-    if (cut) add_cut(frame, pose, *cut, view.size(), d);
-    return d;
+    return pose_derivatives(frame, view, pose, background, weight);
   };
   RefinedPose best{start, 0, 1};
   PoseDerivatives at = derivatives(start);

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
 #include "blocked_mixture.hpp"
 #include "localisations.hpp"
-#include "polar/fusion/cuts.hpp"
 
 namespace polar {
 
@@ -33,11 +31,6 @@ PoseDerivatives pose_derivatives(ViewFrame& frame, const KernelLocalisations& vi
                                  const Pose& view_from_template, float background,
                                  const float* weight = nullptr);
 
-/// Adds what `localisations` gain by a cut, -ln of the share of the centres' weight that it leaves, and the
-/// derivatives.
-void add_cut(ViewFrame& frame, const Pose& view_from_template, const Cut& cut, std::size_t localisations,
-             PoseDerivatives& d);
-
 struct RefinedPose {
   Pose view_from_template;
   double log_likelihood = 0;
@@ -46,8 +39,7 @@ struct RefinedPose {
 
 /// Levenberg-Marquardt on the pose, template fixed; never returns a worse pose than it was given.
 RefinedPose refine_pose(ViewFrame& frame, const KernelLocalisations& view, const Pose& start,
-                        float background, bool planar, int max_evaluations, const float* weight = nullptr,
-                        const std::optional<Cut>& cut = {});
+                        float background, bool planar, int max_evaluations, const float* weight = nullptr);
 
 /// exp(step) applied after view_from_template.
 Pose perturbed(const Pose& view_from_template, const Vector6& step);

@@ -61,6 +61,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
   expert.section("symmetry", [&](auto& s) {
     s.field("similarity_blur", o.symmetry.similarity_blur);
     s.field("hint", o.symmetry.hint);
+    s.field("polyhedral_hint", o.symmetry.polyhedral_hint);
     s.field("axial_hint", o.symmetry.axial_hint);
     s.field("highest_order", o.symmetry.highest_order);
     s.field("orders", o.symmetry.orders);
@@ -71,6 +72,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("first_beta", o.symmetry.first_beta);
     s.field("narrowing", o.symmetry.narrowing);
     s.field("means_standard_errors", o.symmetry.means_standard_errors);
+    s.field("means_loss", o.symmetry.means_loss);
     s.field("relabellings", o.symmetry.relabellings);
     s.field("relabelling_sweeps", o.symmetry.relabelling_sweeps);
   });
@@ -101,7 +103,10 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("least_posterior_share", o.verdict.least_posterior_share);
     s.field("most_rotation_std_deg", o.verdict.most_rotation_std_deg);
     s.field("most_outliers", o.verdict.most_outliers);
+    s.field("draws", o.verdict.draws);
+    s.field("doubtful_standard_errors", o.verdict.doubtful_standard_errors);
     s.field("cloud_standard_errors", o.verdict.cloud_standard_errors);
+    s.field("most_gain", o.verdict.most_gain);
     s.field("least_accepted_share", o.verdict.least_accepted_share);
   });
 }

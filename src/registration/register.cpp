@@ -12,8 +12,8 @@
 #include "proposals/compete.hpp"
 #include "proposals/latent_method.hpp"
 #include "proposals/polar_start.hpp"
-#include "report/report.hpp"
-#include "report/verdict.hpp"
+#include "account/report.hpp"
+#include "account/verdict.hpp"
 #include "smlm/error.hpp"
 #include "states.hpp"
 #include "symmetry/relaxation.hpp"
@@ -24,6 +24,7 @@ namespace polar {
 
 namespace {
 
+constexpr std::uint64_t kDrawSeed = 7919;  // between the draws of what judges the verdict
 constexpr double kLargestFactor = 1.5;  // of a, either way, before a warning
 
 class Stopwatch {
@@ -167,13 +168,33 @@ class Run {
     out_.symmetry = coarse.symmetry;
     if (!group.empty()) fit = tested(problem, refiner, coarse.group, std::move(fit));
     timed("symmetry tested");
-    const Refiner::AgainstCloud against = refiner.judge_against_cloud(fit);
+    const Refiner::AgainstCloud against = against_cloud(grid, refine, coarse.crowded, fit);
     timed("verdict");
     report_views(problem, options_.engine, fit, out_);
     timed("polish");
     judge_registration(against.cloud, against.structure, options_.engine.verdict, out_);
     conclude(problem, coarse, fit);
     return std::move(out_);
+  }
+
+  // Several draws of what judges: a view says little by a fifth of its bursts.
+  Refiner::AgainstCloud against_cloud(const SearchGrid& grid, const RefineOptions& refine, bool crowded,
+                                      const Fit& fit) const {
+    Refiner::AgainstCloud sum;
+    std::vector<double> count(fit.pose.size(), 0.0);
+    sum.structure.assign(count.size(), 0.0), sum.cloud.assign(count.size(), 0.0);
+    for (int draw = 0; draw < options_.engine.verdict.draws; ++draw) {
+      const Problems other = make_problems(problems_.plain.views, options_.engine.evidence,
+                                           options_.seed + kDrawSeed * static_cast<std::uint64_t>(draw + 1));
+      const Refiner::AgainstCloud one = Refiner(other.of(crowded), grid, refine).judge_against_cloud(fit);
+      for (std::size_t i = 0; i < count.size(); ++i) {
+        if (!std::isfinite(one.structure[i]) || !std::isfinite(one.cloud[i])) continue;
+        sum.structure[i] += one.structure[i], sum.cloud[i] += one.cloud[i], ++count[i];
+      }
+    }
+    for (std::size_t i = 0; i < count.size(); ++i)
+      sum.structure[i] /= count[i], sum.cloud[i] /= count[i];  // not a number where nothing judged
+    return sum;
   }
 
   // With the group against without; evidence decides which is the result.

@@ -189,13 +189,10 @@ void read_search(const File& file, RunRecord& r) {
   const std::string starts = "/run/starts/";
   const auto name = texts(file, starts + "name");
   const auto held = numbers<double>(file, starts + "held_out_log_likelihood"),
-             held_std = numbers<double>(file, starts + "held_out_std"),
-             final_held = numbers<double>(file, starts + "final_held_out_log_likelihood"),
-             final_std = numbers<double>(file, starts + "final_held_out_std");
+             held_std = numbers<double>(file, starts + "gain_std");
   const auto won = numbers<std::uint8_t>(file, starts + "won");
   for (std::size_t i = 0; i < name.size(); ++i)
-    r.starts.push_back({name[i], at(held, i, PoseRow::kNone), at(final_held, i, 0.0),
-                        at(held_std, i, PoseRow::kNone), at(final_std, i, PoseRow::kNone),
+    r.starts.push_back({name[i], at(held, i, PoseRow::kNone), at(held_std, i, PoseRow::kNone),
                         at<std::uint8_t>(won, i, 0) != 0});
   r.agreement = attribute(file, "/run/starts", "agreement", 0.0);
   const auto moved = numbers<double>(file, "/run/history/moved"),

@@ -26,27 +26,19 @@ void add_starts(const RunRecord& record, Section& s) {
     s.figures.push_back(absent("starts", "Starts", "No starts competed."));
     return;
   }
-  std::vector<Bar> brief, whole;
+  std::vector<Bar> bars;
   bool errors = false;
   for (std::size_t i = 0; i < std::min(record.starts.size(), kMostStarts); ++i) {
     const StartRecord& start = record.starts[i];
-    brief.push_back(start_bar(start, start.held_out, start.held_out_std));
-    if (start.final_held_out != 0)
-      whole.push_back(start_bar(start, start.final_held_out, start.final_held_out_std));
-    errors = errors || std::isfinite(start.held_out_std) || std::isfinite(start.final_held_out_std);
+    bars.push_back(start_bar(start, start.held_out, start.held_out_std));
+    errors = errors || std::isfinite(start.held_out_std);
   }
   const std::string note =
-      errors ? "Held-out log likelihood a localisation, with standard errors."
+      errors ? "Held-out log likelihood a localisation, with the standard error of its difference to the best before."
              : "Held-out log likelihood a localisation. The record holds no standard errors: small "
                "differences may be chance.";
-  s.figures.push_back({"starts", "Starts, after a short run",
-                       bars_svg(brief, "held-out log likelihood of the starts", false), note});
-  if (whole.empty())
-    s.figures.push_back(
-        absent("finalists", "Starts, on all particles", "No second judging on all particles is recorded."));
-  else
-    s.figures.push_back({"finalists", "Starts, on all particles",
-                         bars_svg(whole, "held-out log likelihood on all particles", false), note});
+  s.figures.push_back({"starts", "Starts and proposals",
+                       bars_svg(bars, "held-out log likelihood of the starts", false), note});
 }
 
 void add_rounds(const RunRecord& record, Section& s) {

@@ -28,7 +28,7 @@ void write_with_unit(File& file, const std::string& name, const std::vector<T>& 
 void write_poses(File& file, const Results& r) {
   const std::size_t n = r.particles.particles.size();
   std::vector<std::string> name, reason;
-  std::vector<double> rotation, translation, covariance, likelihood, margin, outliers, visibility;
+  std::vector<double> rotation, translation, covariance, likelihood, margin, share, outliers, visibility;
   std::vector<std::uint8_t> accepted;
   std::vector<std::uint64_t> total, used;
   for (std::size_t i = 0; i < n; ++i) {
@@ -48,6 +48,7 @@ void write_poses(File& file, const Results& r) {
       for (int b = 0; b < 6; ++b) covariance.push_back(gate * c(a, b));
     likelihood.push_back(gate * v.log_likelihood);
     margin.push_back(gate * v.margin);
+    share.push_back(gate * v.posterior_share);
     outliers.push_back(gate * v.outlier_fraction);
     visibility.push_back(gate * v.visibility);
   }
@@ -66,6 +67,8 @@ void write_poses(File& file, const Results& r) {
                   "covariance of (rotation, translation), left perturbation in the template frame");
   write_with_unit(file, "/poses/log_likelihood", likelihood, {n}, "nat",
                   "mean log density per localisation, in units of the normalisation scale");
+  write_with_unit(file, "/poses/posterior_share", share, {n}, "1",
+                  "of the pose's posterior that lies here and not at another pose");
   write_with_unit(file, "/poses/margin", margin, {n}, "nat",
                   "log_likelihood above the second-best pose found");
   write_with_unit(file, "/poses/outlier_fraction", outliers, {n}, "1",
@@ -90,6 +93,22 @@ void write_template(File& file, const Results& r) {
   const double volume = std::pow(r.normalisation.scale_nm, r.planar ? 2 : 3);
   file.write_attribute("/template", r.planar ? "outlier_density_per_nm2" : "outlier_density_per_nm3",
                        fused.outlier_density / volume);
+}
+
+// The average that lost by evidence: with the symmetry or without it.
+void write_other_template(File& file, const OtherTemplate& other, double scale_nm) {
+  const auto k = static_cast<std::size_t>(other.fused.centre.cols());
+  std::vector<double> centre;
+  for (Eigen::Index c = 0; c < other.fused.centre.cols(); ++c)
+    for (Eigen::Index a = 0; a < 3; ++a) centre.push_back(scale_nm * other.fused.centre(a, c));
+  write_with_unit(file, "/other_template/centre", centre, {k, 3}, "nm", "centres of the other average");
+  const Eigen::VectorXd& weight = other.fused.weight;
+  write_with_unit(file, "/other_template/weight", std::vector<double>(weight.data(), weight.data() + weight.size()),
+                  {k}, "1", "share of each centre");
+  file.write_string_attribute("/other_template", "group", other.group);
+  file.write_attribute("/other_template", "width_nm", scale_nm * other.fused.width);
+  file.write_attribute("/other_template", "held_out_gain", other.gain);
+  file.write_attribute("/other_template", "held_out_gain_std", other.gain_std);
 }
 
 // Where the texts of a column of text are kept; its values are indices into them.
@@ -173,8 +192,10 @@ void write_run(File& file, const Results& r) {
   file.write_attribute("/run", "converged", static_cast<std::uint8_t>(g.converged ? 1 : 0));
   file.write_attribute("/run", "normalisation_scale_nm", r.normalisation.scale_nm);
   file.write_strings("/run/stopped_because", {g.stopped_because});
-  file.write_string_attribute("/run", "verdict", to_string(g.verdict));
-  file.write_strings("/run/verdict_sentence", {g.verdict_reason});
+  if (!g.verdict_reason.empty()) {
+    file.write_string_attribute("/run", "verdict", to_string(g.verdict));
+    file.write_strings("/run/verdict_sentence", {g.verdict_reason});
+  }
   file.write_attribute("/run", "structure_gain", g.structure_gain);
   file.write_attribute("/run", "structure_gain_std", g.structure_gain_std);
   std::vector<std::string> warnings = r.particles.table.warnings;
@@ -277,6 +298,8 @@ void write_result_file(const std::string& path, const Results& results,
   write_superparticle(file, results, superparticle);
   write_rejected(file, results);
   write_run(file, results);
+  if (results.registration.other)
+    write_other_template(file, *results.registration.other, results.normalisation.scale_nm);
   if (results.registration.symmetry)
     write_symmetry(file, *results.registration.symmetry, results.normalisation.scale_nm);
   if (results.resolution) write_resolution(file, *results.resolution);

@@ -338,7 +338,8 @@ class Meaning(TableCase):
         self.assertEqual([(c["name"], c["values"]) for c in kept], [("frame", 96), ("intensity [photon]", 96)])
 
     def test_names_of_files_with_one_stem(self):
-        self.write("cell.txt", text(shape(2, 12, seed=3)))
+        self.write("cell.txt", text(shape(2, 150, seed=3)))
+        self.write("t.csv", text(shape(4, 150)))
         shutil.move(self.folder / "t.csv", self.folder / "cell.csv")
         self.ok("run", self.input("[cell.csv, cell.txt]", rest=FAST), "--threads", "1", "--quiet")
         with (self.folder / "results/poses.csv").open() as table:
@@ -445,7 +446,7 @@ class Structures(TableCase):
 
 class Poses(TableCase):
     def test_a_truth_that_went_through_a_spreadsheet(self):
-        rows = shape(5, 20)
+        rows = shape(5, 150)
         self.write("t.csv", text(rows))
         self.ok("run", self.input("[t.csv]", rest=FAST), "--threads", "1", "--quiet")
         poses = (self.folder / "results/poses.csv").read_text()

@@ -12,20 +12,14 @@
 namespace polar {
 
 struct CalibrationReport {
-  NoiseModel noise;           // a and b; width as given, inside b once fitted
-  double log_likelihood = 0;  // mean per localisation of `held_out`
+  NoiseModel noise;  // a and b; width as given, inside b once fitted
 };
 
-/// Maximises over a and b (axial ones only where views have an axis), starting from `start`, whose width goes
-/// into b. `visibility`: factors of every view's centres
-/// (FusionData::set_visibility), or none. A weak prior holds a at 1 where sigma hardly varies and a and b
-/// cannot be told apart.
+/// Maximises over a and b (axial ones only where lateral and axial uncertainties differ enough to be told
+/// apart), starting from `start`, whose width goes into b. A weak prior holds a at 1 where sigma hardly
+/// varies and a and b cannot be told apart.
 CalibrationReport calibrate(const Views& views, const std::vector<Eigen::Vector3f>& axes,
                             const Subsets& held_out, const Mixture& mixture,
-                            const std::vector<Pose>& template_from_view, const NoiseModel& start,
-                            const std::vector<std::vector<float>>& visibility = {});
-
-/// True where lateral and axial uncertainties differ enough to be calibrated apart.
-bool has_axis(const Views& views, const std::vector<Eigen::Vector3f>& axes);
+                            const std::vector<Pose>& template_from_view, const NoiseModel& start);
 
 }  // namespace polar

@@ -8,8 +8,8 @@
 
 namespace polar {
 
-/// A cube about the origin of the template's frame (planar: a square), x the fastest axis. Lengths in particle
-/// radii.
+/// A cube about the origin of the template's frame (planar: a square), x the fastest axis. Lengths in
+/// particle radii.
 struct VoxelFrame {
   VoxelFrame(double reach, double voxel, bool planar);
 
@@ -75,8 +75,8 @@ class DensityGrid {
   std::vector<float> value_;
 };
 
-/// ln((1 - e) density + e u) as 16-bit numbers: a pose costs one nearest-voxel look-up a localisation, added as
-/// integers, the same on every machine.
+/// ln((1 - e) density + e u) as 16-bit numbers: a pose costs one nearest-voxel look-up a localisation, added
+/// as integers, the same on every machine.
 class LogVolume {
  public:
   LogVolume(const DensityGrid& density, double outlier_fraction, double outlier_density);

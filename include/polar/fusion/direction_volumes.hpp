@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "polar/core/view.hpp"
@@ -42,15 +41,11 @@ struct SearchView {
 SearchView search_view(const View& view, const Eigen::Vector3f& axis, const NoiseModel& noise,
                        const SigmaClasses& classes, const std::vector<std::uint32_t>& subset);
 
-/// Factor on the density of outliers at a point of the template's frame.
-using BackgroundFactor = std::function<float(const Eigen::Vector3f&)>;
-
 class DirectionVolumes {
  public:
   /// Builds classes x directions volumes. `directions` 1: one volume with the mean of the three axes'
-  /// variances. `background`: where outliers are less likely than elsewhere; none: nowhere.
-  DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions, bool planar,
-                   const BackgroundFactor& background = {});
+  /// variances.
+  DirectionVolumes(const Mixture& mixture, const SigmaClasses& classes, int directions, bool planar);
 
   /// Which direction's volume serves a pose: R is template_from_view.
   int direction_of(const SearchView& view, const Eigen::Matrix3f& rotation) const;
@@ -63,7 +58,6 @@ class DirectionVolumes {
               const Eigen::Vector3f& translation) const;
 
  private:
-  std::vector<float> empty_volume(float density, const BackgroundFactor& factor) const;
   const std::int16_t* volume(int sigma_class, int direction) const;
 
   float voxel_ = 1, zero_ = 0, scale_ = 1;  // ln p = value / scale + zero

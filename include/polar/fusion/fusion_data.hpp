@@ -8,7 +8,6 @@
 
 #include "polar/core/pose.hpp"
 #include "polar/core/view.hpp"
-#include "polar/fusion/cuts.hpp"
 #include "polar/fusion/effective.hpp"
 #include "polar/fusion/mixture.hpp"
 
@@ -27,25 +26,18 @@ class FusionData {
   FusionData& operator=(FusionData&&) noexcept;
 
   std::size_t size() const;
-  bool planar() const { return noise_.planar; }
-  const NoiseModel& noise() const { return noise_; }
+  bool planar() const { return planar_; }
 
-  /// Visibility: factors on the weights of the mixture's centres for one view, or none. Normalisation is the
-  /// caller's.
-  void set_visibility(std::size_t view, std::vector<float> factor);
+  /// Visibility: for every view factors on the weights of the mixture's centres, or none. Normalisation is
+  /// the caller's.
   void set_visibility(std::vector<std::vector<float>> factor_of_view);
   const std::vector<float>& visibility(std::size_t view) const;
-
-  /// The views are cut (cuts.hpp): `reach` of every view, of which those of the constructor's `which` count.
-  /// It outlives the object.
-  void set_cut(const std::vector<ViewReach>& reach, const std::vector<int>& which = {});
-  bool cut() const;
 
   struct Impl;
   const Impl& impl() const { return *impl_; }
 
  private:
-  NoiseModel noise_;
+  bool planar_;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -16,7 +16,6 @@ namespace polar {
 
 struct MaximisationOptions {
   bool free_weights = false;  // centres may weigh differently (discrete sites); else all equal
-  bool keep_weights = false;  // of the centres as they are; only positions move
   bool support = true;        // weigh a centre by the share of views that support it (against strands)
   double weakest_share =
       0.05;  // a centre with less than this share of the mean is sown anew beside a strong one
@@ -28,7 +27,6 @@ struct MaximisationOptions {
 
 struct MaximisationReport {
   double log_likelihood = 0;  // before the step, sum over localisations
-  double localisations = 0;
 };
 
 /// Poses are template_from_view, one a view of `data`. Expects and leaves the centres sorted into blocks;

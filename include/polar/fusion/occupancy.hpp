@@ -20,11 +20,11 @@ std::vector<std::vector<float>> occupancy(const Mixture& mixture, const FusionDa
                                           const std::vector<Pose>& template_from_view, double strength,
                                           double reach);
 
-/// The strength under which the views' counts of centres, pooled in the same way, are likeliest: evidence of the
-/// Dirichlet-multinomial, no localisation needs to be held out. Infinite where every view shows the template as
-/// it is, up to chance.
-double likeliest_strength(const Mixture& mixture, const FusionData& data, const std::vector<Pose>& template_from_view,
-                          double reach);
+/// The strength under which the views' counts of centres, pooled in the same way, are likeliest: evidence of
+/// the Dirichlet-multinomial, no localisation needs to be held out. Infinite where every view shows the
+/// template as it is, up to chance.
+double likeliest_strength(const Mixture& mixture, const FusionData& data,
+                          const std::vector<Pose>& template_from_view, double reach);
 
 /// Share of the template's weight that a view shows: sum_k min(pi_ik, w_k); 1 without factors.
 double shown_share(const Mixture& mixture, const std::vector<float>& factor);

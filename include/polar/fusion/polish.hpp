@@ -13,17 +13,15 @@ namespace polar {
 
 struct PolishedPose {
   Pose template_from_view;
-  /// H^-1 J H^-1, H the observed information, J the sum over bursts of the outer products of their gradients
-  /// (P. J. Huber, Proc. 5th Berkeley Symposium 1, 1967; K.-Y. Liang and S. L. Zeger, Biometrika 73, 1986): right where the
-  /// localisations of a burst say the same. H^-1 where they are no more than a pose has parameters. For x -> exp(w) x + v applied after template_from_view, order (w,
-  /// v).
+  /// H^-1 J H^-1, H the observed information (where that is flat or a saddle the Fisher sum), J the sum over
+  /// bursts of the outer products of their gradients (P. J. Huber, Proc. 5th Berkeley Symposium 1, 1967;
+  /// K.-Y. Liang and S. L. Zeger, Biometrika 73, 1986): right where the localisations of a burst say the
+  /// same. H^-1 where bursts are no more than a pose has parameters. For x -> exp(w) x + v applied after
+  /// template_from_view, order (w, v).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  bool information_positive =
-      false;                  // false: flat or saddle, the covariance is the pseudo-inverse of the Fisher sum
-  double temper = 1;          // by which the log likelihood counts its bursts too often: 6 / tr(H^-1 J), at most 1
-  double log_likelihood = 0;  // mean per localisation
+  double temper = 1;  // by which the log likelihood counts its bursts too often: 6 / tr(H^-1 J), at most 1
+  double log_likelihood = 0;    // mean per localisation
   double outlier_fraction = 0;  // expected share that the template does not explain
-  bool improved = false;        // by the least squares, over the pose given
 };
 
 /// Poses template_from_view, one a view of `data`, template fixed. Minimises with Ceres, for responsibilities

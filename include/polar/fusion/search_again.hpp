@@ -18,7 +18,6 @@ struct SearchAgainOptions {
   int basins = 8;                // M of the paper
   int evaluations = 8;           // of the refinement of a basin
   int most_localisations = 160;  // of a view that the search looks at: enough to find basins
-  int coarse_localisations = 0;  // looked at before the promising rotations are known; 0: all of the above
   // Basins whose log likelihoods differ by less over so few localisations are told apart by more of them.
   double doubt = 8;
   int most_judging = 1000;
@@ -28,7 +27,6 @@ struct SearchAgainOptions {
   double escape_gain = 2;  // log likelihood that a move must gain to count: less is a symmetric twin or a tie
   RotationGroup group;     // of the template: poses that differ by an element are one
   SearchOptions grid;
-  const std::vector<ViewReach>* reach = nullptr;  // of every view, where they are cut
 };
 
 struct SearchAgainReport {

@@ -64,6 +64,7 @@ struct ProposalOptions {
 struct SymmetryOptions {
   double similarity_blur = 0.08;  // of the density whose turns are compared; measured
   double hint = 0.5;           // self-similarity from which a group is worth trying (1 the same, 0 any); chosen
+  double polyhedral_hint = 0.15;  // the same of T, O and I, whose few sites a coarse template blurs; chosen
   double axial_hint = 0.4;     // self-similarity under any turn about an axis, from which harmonics tell; measured
   int highest_order = 12;      // of an axis tried; chosen
   int orders = 3;              // of an axis, most significant first, that are tried; measured
@@ -72,6 +73,7 @@ struct SymmetryOptions {
   int sweeps = 10;             // of a trial; measured
   double first_width = 0.09, first_beta = 0.35, narrowing = 0.6;  // of a trial; measured
   double means_standard_errors = 4;  // that a group may cost against none as a means, before it is tested; chosen
+  double means_loss = 0.25;   // and nat a localisation that it may cost at all; measured: pores .05 to .15
   int relabellings = 2;        // tries to tell the images of a unit apart; chosen
   int relabelling_sweeps = 8;  // chosen
 };
@@ -81,7 +83,10 @@ struct VerdictOptions {
   double least_posterior_share = 0.9;  // of a view's pose posterior within its stated spread; chosen
   double most_rotation_std_deg = 30;   // of a pose that says anything; chosen
   double most_outliers = 0.8;          // share of a view's localisations outside the template; chosen
+  int draws = 4;                       // of what judges, each with its own search; chosen
+  double doubtful_standard_errors = 1;  // by which it must explain more at all, or there is none; chosen
   double cloud_standard_errors = 3;    // by which a structure must explain more than a cloud; chosen
+  double most_gain = 1;                // nat a localisation over a cloud, either way, that a view counts for; chosen
   double least_accepted_share = 0.3;   // of the particles when a structure counts as found; chosen
 };
 

@@ -71,7 +71,7 @@ struct Registration {
   /// Share of the views that the two best starts pose alike, up to one common rotation; 0 of a single start.
   double agreement = 0;
   Verdict verdict = Verdict::none;
-  std::string verdict_reason = "never ran";  // one sentence
+  std::string verdict_reason;  // one sentence; empty: it never ran
   /// Held-out log density per localisation above that of a cloud without structure, and its standard error.
   double structure_gain = 0, structure_gain_std = 0;
   std::optional<OtherTemplate> other;  // where a symmetry was found or imposed

@@ -25,8 +25,8 @@ struct ParticleFit {
 
 struct StartRecord {
   std::string name;
-  double held_out = 0, final_held_out = 0;  // nat a localisation; the second is 0 where it did not get so far
-  double held_out_std = PoseRow::kNone, final_held_out_std = PoseRow::kNone;  // standard errors
+  double held_out = 0;                      // nat a localisation
+  double held_out_std = PoseRow::kNone;     // standard error of what it gains over the best before it
   bool won = false;
 };
 

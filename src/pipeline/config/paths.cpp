@@ -46,7 +46,11 @@ std::vector<std::string> expand_files(const std::vector<std::string>& patterns, 
   std::vector<std::string> files;
   for (const std::string& pattern : patterns) {
     const std::string path = resolve_path(pattern, folder);
-    const std::vector<std::string> found = matching_paths(path);
+    std::vector<std::string> found = matching_paths(path);
+    // A link that leads nowhere is there by its name: opening it says what is wrong.
+    std::error_code ignored;
+    if (found.empty() && std::filesystem::is_symlink(std::filesystem::symlink_status(path, ignored)))
+      found = {path};
     if (found.empty()) refuse_missing(pattern, path);
     files.insert(files.end(), found.begin(), found.end());
     if (matched && pattern.find_first_of("*?[") != std::string::npos)

@@ -152,25 +152,22 @@ Competition compete(const Problems& problems, const Autoencoder* model, const Re
     return !progress.cancelled();
   };
   const Competition cancelled{SoftState(contest.of(false).frame()), false, {}, 0, false};
-  if (wants(options, "random"))
-    for (int k = 1; k <= o.most_starts && (k <= o.fewest_starts || !contest.agreed()); ++k) {
-      if (!step(contest.random(k))) return cancelled;
-      // Poses from elsewhere are asked for where two random starts do not agree.
-      if (k != o.fewest_starts || contest.agreed()) continue;
-      if (wants(options, "imaged") &&
-          !step(contest.from("imaged", std::vector<SoftPose>(problems.plain.size()), 900)))
-        return cancelled;
-      if (wants(options, "polar") && model != nullptr &&
-          !step(contest.from("polar", polar_poses(problems.plain, contest.which(), *model, options), 901)))
-        return cancelled;
-    }
-  else {
+  // Poses from elsewhere; false: cancelled.
+  const auto posed_starts = [&] {
     if (wants(options, "imaged") &&
         !step(contest.from("imaged", std::vector<SoftPose>(problems.plain.size()), 900)))
-      return cancelled;
-    if (wants(options, "polar") && model != nullptr &&
-        !step(contest.from("polar", polar_poses(problems.plain, contest.which(), *model, options), 901)))
-      return cancelled;
+      return false;
+    return !wants(options, "polar") || model == nullptr ||
+           step(contest.from("polar", polar_poses(problems.plain, contest.which(), *model, options), 901));
+  };
+  if (!wants(options, "random")) {
+    if (!posed_starts()) return cancelled;
+  } else {
+    for (int k = 1; k <= o.most_starts && (k <= o.fewest_starts || !contest.agreed()); ++k) {
+      if (!step(contest.random(k))) return cancelled;
+      // They are asked for where two random starts do not agree.
+      if (k == o.fewest_starts && !contest.agreed() && !posed_starts()) return cancelled;
+    }
   }
   for (int k = 1, rejected = 0; k <= o.most_proposals && rejected < o.rejected; ++k) {
     if (!step(contest.regrown(k))) return cancelled;

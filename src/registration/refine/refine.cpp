@@ -117,6 +117,10 @@ Evidence Refiner::held_out(const Fit& fit) const {
 Evidence Refiner::judge(const Fit& fit) const { return held_out(blind(fit)); }
 
 Refiner::AgainstCloud Refiner::judge_against_cloud(Fit fit) const {
+  // A structure that is there shows at the first width already; the last one is as fine as all views allow.
+  fit.noise.width = std::sqrt(std::max(fit.noise.width * fit.noise.width,
+                                       options_.first_width * options_.first_width -
+                                           fit.noise.lateral_extra * fit.noise.lateral_extra));
   fit = blind(std::move(fit));
   search(problem_.fitted, fit);
   fit = blind(std::move(fit));

@@ -51,7 +51,10 @@ class Trials {
   std::vector<SymmetryFrame> hinted(const std::string& asked) {
     std::vector<SymmetryFrame> out = {{"C1", {}, 1}};
     SymmetryFrame axial = best_frame(similarity_, kAnyTurn, o_.hint);
-    if (axial.similarity >= o_.axial_hint) {
+    // In the plane the axis is known, and a resolved template must not be moved to look alike under a wrong turn.
+    if (problem_.planar()) axial.canonical_from_template = {Eigen::Matrix3d::Identity(), -similarity_.centroid()};
+    const bool is_axial = problem_.planar() || axial.similarity >= o_.axial_hint;
+    if (is_axial) {
       std::vector<SoftPose> pose = in_frame(axial.canonical_from_template).best;
       std::size_t taken = 0;
       for (const AxialHarmonic& h :
@@ -63,14 +66,15 @@ class Trials {
         const bool any_turn = taken == 0 && h.order >= o_.highest_order - 1;
         if (strong || any_turn || axial.group == asked) out.push_back(axial);
       }
-    } else {
-      std::vector<std::string> names;
+    }
+    std::vector<std::string> names;
+    if (!is_axial)
       for (int n = 2; n <= o_.highest_order; ++n) names.push_back("C" + std::to_string(n));
-      if (!problem_.planar()) names.insert(names.end(), {"T", "O", "I"});
-      for (const std::string& name : names) {
-        const SymmetryFrame f = best_frame(similarity_, name, o_.hint);
-        if (f.similarity >= o_.hint || name == asked) out.push_back(f);
-      }
+    if (!problem_.planar()) names.insert(names.end(), {"T", "O", "I"});
+    for (const std::string& name : names) {
+      const SymmetryFrame f = best_frame(similarity_, name, o_.polyhedral_hint);
+      const double least = name[0] == 'C' ? o_.hint : o_.polyhedral_hint;
+      if (f.similarity >= least || name == asked) out.push_back(f);
     }
     const bool has = std::any_of(out.begin(), out.end(), [&](const auto& f) { return f.group == asked; });
     if (!asked.empty() && !has && asked[0] != 'D') out.push_back(best_frame(similarity_, asked, -INFINITY));
@@ -79,7 +83,7 @@ class Trials {
 
   Trial run(const SymmetryFrame& frame, std::uint64_t key) {
     SoftState state = in_frame(frame.canonical_from_template);
-    if (is_cyclic(frame.group) && frame.similarity >= o_.hint) {
+    if (is_cyclic(frame.group) && (problem_.planar() || frame.similarity >= o_.axial_hint)) {
       align_azimuths(problem_, fold_of(frame.group), annealer_.which(), state.best);
       for (const int i : annealer_.which()) {
         auto& samples = state.sample[static_cast<std::size_t>(i)];
@@ -148,7 +152,8 @@ std::size_t largest_free(const std::vector<Trial>& trials, const EngineOptions& 
   const double tolerance = trials[best].group == "C1" ? options.symmetry.means_standard_errors
                                                       : options.evidence.standard_errors;
   const auto is_free = [&](std::size_t k) {
-    return compare(trials[best].evidence, trials[k].evidence).better_by(-tolerance);
+    const Comparison c = compare(trials[best].evidence, trials[k].evidence);
+    return c.better_by(-tolerance) && c.gain > -options.symmetry.means_loss;
   };
   std::size_t chosen = best;
   for (bool grown = true; grown;) {

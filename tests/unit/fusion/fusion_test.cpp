@@ -182,23 +182,6 @@ TEST(DirectionVolumes, manyShiftsAtATimeScoreAsEachAloneInEveryInstructionSet) {
   limit_isa(Isa::avx512);
 }
 
-TEST(PoseSearch, shiftsWithinAReachLeaveNoGapWiderThanAStep) {
-  const float step = 0.1f, reach = 0.4f;
-  EXPECT_EQ(shifts_within(0, step, true), axis_shifts(step, true));
-  const std::vector<Eigen::Vector3f> planar = shifts_within(reach, step, true);
-  for (int k = 0; k < 12; ++k) {
-    const float angle = 0.5f * static_cast<float>(k);
-    const Eigen::Vector3f centre = 0.9f * reach * Eigen::Vector3f(std::cos(angle), std::sin(angle), 0);
-    float nearest = 1;
-    for (const Eigen::Vector3f& s : planar) {
-      EXPECT_EQ(s.z(), 0);
-      EXPECT_LE(s.norm(), reach * 1.001f);
-      nearest = std::min(nearest, (s - centre).norm());
-    }
-    EXPECT_LE(nearest, step) << angle;
-  }
-}
-
 TEST(Calibration, recoversWhatTheTableStatesWrongly) {
   Scene scene(60, 100, 0.06f, 0.15f);
   for (View& v : scene.set.view)  // the table states half the true lateral value
@@ -260,8 +243,6 @@ TEST(Polish, covarianceDescribesTheErrorsThatAreMade) {
   const auto polished = polish(scene.mixture, data, start);
   double chi2 = 0;
   for (std::size_t i = 0; i < polished.size(); ++i) {
-    EXPECT_TRUE(polished[i].information_positive);
-    EXPECT_TRUE(polished[i].improved);
     const Pose error = polished[i].template_from_view * scene.pose[i].inverse();
     Eigen::Matrix<double, 6, 1> e;
     e << so3_log(error.rotation), error.translation;

@@ -55,7 +55,7 @@ struct NearlySymmetric {
 TEST(SearchAgain, allLocalisationsDecideWhereFewCannot) {
   const NearlySymmetric scene;
   SearchAgainOptions options;
-  options.grid.translation = shifts_within(0, 0.1f, false);
+  options.grid.translation = axis_shifts(0.1f, false);
   options.most_localisations = 128;
   EXPECT_EQ(scene.brought_back(options), kViews);
   options.most_judging = 128;  // the views that this brings back are why the others are asked

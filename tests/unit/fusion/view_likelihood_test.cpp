@@ -89,28 +89,6 @@ TEST_P(ViewLikelihood, gradientMatchesCentralDifferences) {
   }
 }
 
-TEST(AddCut, gradientMatchesCentralDifferences) {
-  Case c(false);
-  ViewFrame frame(c.blocked);
-  const Pose pose = c.truth.inverse();
-  const Cut cut{Eigen::Vector3f(0.5f, -0.4f, 0.7f).normalized(), 0.1f, 1};
-  constexpr double kLocalisations = 300;
-  const auto at = [&](const Pose& p) {
-    PoseDerivatives d;
-    add_cut(frame, p, cut, static_cast<std::size_t>(kLocalisations), d);
-    return d;
-  };
-  const PoseDerivatives d = at(pose);
-  ASSERT_GT(d.log_likelihood, 0.05 * kLocalisations) << "the plane cuts nothing";
-  ASSERT_LT(d.log_likelihood, -std::log(0.25) * kLocalisations) << "the plane leaves nothing";
-  constexpr double kStep = 1e-3;  // a centre's coordinates are single precision
-  for (int i = 0; i < 6; ++i) {
-    const auto value = [&](double s) { return at(perturbed(pose, s * Vector6::Unit(i))).log_likelihood; };
-    const double numeric = (value(kStep) - value(-kStep)) / (2 * kStep);
-    EXPECT_NEAR(d.gradient[i], numeric, 0.02 * std::abs(numeric) + 1.0) << i;
-  }
-}
-
 TEST_P(ViewLikelihood, refinementFindsTheTruthFromEightDegreesOff) {
   Case c(GetParam());
   ViewFrame frame(c.blocked);

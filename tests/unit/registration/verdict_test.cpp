@@ -1,4 +1,4 @@
-#include "registration/report/verdict.hpp"
+#include "registration/account/verdict.hpp"
 
 #include <gtest/gtest.h>
 

@@ -44,7 +44,7 @@ TEST(ReportRecord, HoldsWhatTheRunWrote) {
   EXPECT_EQ(r.command, "polar run 'my pores.yaml'");
   EXPECT_EQ(r.input_sha256[0], std::string(64, 'a'));
   EXPECT_EQ(r.starts.size(), 2u);
-  EXPECT_TRUE(std::isnan(r.starts[0].held_out_std));
+  EXPECT_EQ(r.starts[0].held_out_std, results.registration.starts[0].gain_std);
   EXPECT_TRUE(r.resolution.has_value());
   EXPECT_TRUE(r.history.empty());
 }
@@ -77,6 +77,7 @@ RunRecord smallest(const std::function<void(smlm::h5::File&)>& more) {
   f.make_group("/run/calibration");
   for (const char* name : {"lateral_factor", "axial_factor", "lateral_extra_nm", "axial_extra_nm"})
     f.write_attribute("/run/calibration", name, 1.0);
+  f.write_strings("/run/warnings", {});
   for (const char* name : {"program", "configuration", "input_hash"})
     f.write_strings(std::string("/run/") + name, {"x"});
   f.write("/template/centre", std::vector<double>{1, 2, 3}, {1, 3});
@@ -97,8 +98,7 @@ TEST(ReportRecord, TakesWhatMayBeThereAndDoesWithout) {
     f.write_strings("/run/verdict_sentence", {"Two structures fit."});
     f.write_strings("/run/starts/name", {"random 1"});
     f.write("/run/starts/held_out_log_likelihood", std::vector<double>{1});
-    f.write("/run/starts/held_out_std", std::vector<double>{0.5});
-    f.write("/run/starts/final_held_out_std", std::vector<double>{0.25});
+    f.write("/run/starts/gain_std", std::vector<double>{0.5});
     f.write("/run/history/moved", std::vector<double>{5, 1});
     f.write("/run/history/escaped", std::vector<double>{2});
     f.write("/poses/posterior_rotation_deg", std::vector<double>{7});
@@ -108,7 +108,6 @@ TEST(ReportRecord, TakesWhatMayBeThereAndDoesWithout) {
   });
   EXPECT_EQ(full.verdict_sentence, "Two structures fit.");
   EXPECT_EQ(full.starts[0].held_out_std, 0.5);
-  EXPECT_EQ(full.starts[0].final_held_out_std, 0.25);
   ASSERT_EQ(full.history.size(), 2u);
   EXPECT_EQ(full.history[0].escaped, 2);
   EXPECT_TRUE(std::isnan(full.history[1].escaped));

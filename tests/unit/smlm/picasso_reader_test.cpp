@@ -129,12 +129,12 @@ TEST_F(PicassoReader, AxialPrecisionInPixelsIsNoticed) {
 
 TEST_F(PicassoReader, RowsInErrorAreNamed) {
   Columns columns = three;
-  columns[3].second = {.1, 0};
+  columns[3].second = {0, .2};  // the second row belongs to no particle, so it refuses nothing
   ReadOptions options;
   options.pixel_size_nm = 100;
   const Error error = test::error_of([&] { read_table(make<float>("f.hdf5", columns), options); });
   EXPECT_THAT(error.what(),
-              HasSubstr("f.hdf5:/locs: row 2: uncertainty is not positive (column 'lpx' is 0)"));
+              HasSubstr("f.hdf5:/locs: row 1: uncertainty is not positive (column 'lpx' is 0)"));
 }
 
 TEST_F(PicassoReader, RealFiles) {

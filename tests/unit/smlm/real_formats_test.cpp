@@ -17,7 +17,7 @@ struct Expected {
 };
 
 const std::vector<Expected> expected{
-    {"README.txt", "", 0, "no column is known as x"},
+    {"README.txt", "", 0, "README.txt:38: has 7 fields where the header has 26"},
     {"locan_Elyra_dstorm_data.txt", "elyra", 15, ""},
     {"locan_Nanoimager_dstorm_data.csv", "oni", 14, ""},
     {"locan_SMLM_dstorm_data.smlm", "smlm", 10, ""},
