@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "polar/core/constants.hpp"
+#include "polar/core/so3.hpp"
 
 namespace polar {
 
@@ -47,7 +48,9 @@ smlm::LocalisationTable moved(smlm::LocalisationTable t, const Pose& pose) {
 Pose template_from_table(const Results& results, std::size_t i) {
   const Pose& engine = results.registration.view[i].template_from_view;
   const Normalisation& n = results.normalisation;
-  return {engine.rotation, n.scale_nm * engine.translation - engine.rotation * n.centre_nm[i]};
+  // Products of many turns leave 1e-7, which a particle far from the table's origin shows in picometres.
+  const Eigen::Matrix3d rotation = nearest_rotation(engine.rotation);
+  return {rotation, n.scale_nm * engine.translation - rotation * n.centre_nm[i]};
 }
 
 Eigen::Matrix<double, 6, 6> pose_covariance_nm(const Results& results, std::size_t i) {
