@@ -71,7 +71,9 @@ int fewest_seen(const std::vector<int>& occupied, int sites) {
   for (const int n : occupied)
     if (n > 0) fewest = std::min(fewest, n);
   if (fewest == sites) return 1;  // every site of every particle: nothing is missing
-  for (; fewest < sites; ++fewest) {  // those that chance left in although most like them are missing
+  // Those that chance left in although most like them are missing. Two different counts must stay above: one
+  // alone, every site, would be explained by any efficiency.
+  for (; fewest + 1 < sites; ++fewest) {
     const Counts above(occupied, fewest + 1, sites);
     if (above.particles < 1) break;
     const double expected = expected_between(above, fewest);

@@ -22,7 +22,9 @@ output: {directory: batch}
 class Batch(PolarCase):
     def setUp(self):
         super().setUp()
-        simulation = self.write("simulation.yaml", "simulation: {particles: 8, blinks_mean: 4, cramer_rao: false}\n")
+        # Enough of each that the average counts as a structure also where 40 % is labelled.
+        simulation = self.write("simulation.yaml", "simulation: {particles: 10, orientation: in_plane, tilt_std_deg: 5,"
+                                " blinks: poisson, blinks_mean: 8, sigma_xy_nm: 3, cramer_rao: false}\n")
         for labelled in (40, 60, 80):
             for cell in range(4):
                 self.ok("simulate", simulation, "--output", f"data/labelled_{labelled}/cell_{cell}",

@@ -60,6 +60,16 @@ TEST(Labelling, EveryAndOneSite) {
   EXPECT_LT(labelling_efficiency(std::vector<int>(20, 1), 6, 1).efficiency, 0.01);
 }
 
+// Five of 24 particles lack one of 17 sites, or two: nothing is missing, and the efficiency is that share.
+TEST(Labelling, NearlyEverySite) {
+  std::vector<int> occupied(19, 17);
+  occupied.insert(occupied.end(), {16, 16, 16, 16, 15});
+  const Labelling l = labelling_efficiency(occupied, 17, 1);
+  EXPECT_EQ(l.particles, 24u);
+  EXPECT_NEAR(l.efficiency, 1 - 6.0 / (24 * 17), 0.01);
+  EXPECT_GT(l.low, 0.95);
+}
+
 // Particles that are labelled together, all or nothing, tell less than independent ones.
 TEST(Labelling, DispersionWidensTheInterval) {
   std::vector<int> together;
