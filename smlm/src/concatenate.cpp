@@ -90,6 +90,7 @@ Concatenation::Concatenation(const std::vector<std::string>& files, const ReadOp
     : files_(files),
       one_per_file_(options.particles == "one_per_file"),
       by_column_(options.particles == "column"),
+      file_is_channel_(options.channel.per_file),
       names_(short_names(files)) {
   // The same path twice would give two particles one name.
   const std::set<std::string> distinct(files.begin(), files.end());
@@ -108,8 +109,30 @@ void Concatenation::name_particles(LocalisationTable& table) {
     return;
   }
   if (by_column_ && !has_column && table.size() > 0) without_particle_column_.push_back(files_[appended_]);
-  if (files_.size() < 2) return;
+  if (files_.size() < 2 || file_is_channel_) return;
   for (std::string& name : table.particle_names) name = names_[appended_] + ":" + name;
+}
+
+void Concatenation::add_channel(LocalisationTable& table) const {
+  table.extra.push_back({kFileChannel, "", std::vector<double>(table.size(), 0), {names_[appended_]}});
+}
+
+// Particles of one name are one only where files are channels of the same particles.
+void Concatenation::append_particles(LocalisationTable& table) {
+  std::map<std::string, std::int64_t> known;
+  if (file_is_channel_)
+    for (std::size_t i = 0; i < all_.particle_names.size(); ++i)
+      known.emplace(all_.particle_names[i], static_cast<std::int64_t>(i));
+  std::vector<std::int64_t> index;
+  for (const std::string& name : table.particle_names) {
+    const auto found = known.find(name);
+    index.push_back(found != known.end() ? found->second
+                                         : static_cast<std::int64_t>(all_.particle_names.size()));
+    if (found == known.end()) all_.particle_names.push_back(name);
+  }
+  for (std::int64_t& particle : table.particle)
+    if (particle >= 0) particle = index[static_cast<std::size_t>(particle)];
+  append_moved(all_.particle, table.particle);
 }
 
 void Concatenation::append_extra(const LocalisationTable& table, std::size_t rows_before) {
@@ -153,6 +176,7 @@ void Concatenation::require_one_depth(const LocalisationTable& table) {
 
 void Concatenation::append(LocalisationTable table) {
   name_particles(table);
+  if (file_is_channel_) add_channel(table);
   for (const std::string& warning : table.warnings) {
     auto& files = warned_files_[warning];
     if (files.empty()) warning_order_.push_back(warning);
@@ -165,14 +189,11 @@ void Concatenation::append(LocalisationTable table) {
     table.warnings.clear();
     all_ = std::move(table);
   } else {
-    const auto first_particle = static_cast<std::int64_t>(all_.particle_names.size());
-    for (std::int64_t& particle : table.particle) particle += particle < 0 ? 0 : first_particle;
     std::fill(table.source_file.begin(), table.source_file.end(), file);
     append_extra(table, rows_before);
     append_moved(all_.position_nm, table.position_nm);
     append_moved(all_.covariance_nm2, table.covariance_nm2);
-    append_moved(all_.particle, table.particle);
-    append_moved(all_.particle_names, table.particle_names);
+    append_particles(table);
     append_moved(all_.source_file, table.source_file);
     append_moved(all_.source_row, table.source_row);
     append_moved(all_.files, table.files);

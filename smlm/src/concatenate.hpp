@@ -23,10 +23,13 @@ class Concatenation {
   void name_particles(LocalisationTable& table);
   void require_one_depth(const LocalisationTable& table);
   void warn_about_particles();
+  void add_channel(LocalisationTable& table) const;
+  void append_particles(LocalisationTable& table);
   void append_extra(const LocalisationTable& table, std::size_t rows_before);
 
   const std::vector<std::string>& files_;
   bool one_per_file_, by_column_;
+  bool file_is_channel_;            // of the same particles
   std::vector<std::string> names_;  // of the files, as short as keeps them apart
   LocalisationTable all_;
   std::size_t appended_ = 0;

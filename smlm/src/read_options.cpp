@@ -42,6 +42,17 @@ std::vector<std::string> violations(const ReadOptions& options) {
   }
   check_word(faults, "lpz_unit", options.lpz_unit, {"nm", "px"});
   check_word(faults, "sigma_kind", options.sigma_kind, {"", "std", "variance"});
+  for (const auto& [key, bounds] : options.filters)
+    if (!(bounds[0] <= bounds[1]))
+      faults.push_back("filters." + key + ": the low bound is above the high one");
+  for (const std::string& fault : violations(options.group)) faults.push_back("group." + fault);
+  for (const std::string& fault : violations(options.channel)) faults.push_back("channel." + fault);
+  if (options.channel.per_file && options.particles != "column" && options.pick.centres.empty())
+    faults.emplace_back(
+        "channel.per_file: the files have no particles in common; name a particle column, or "
+        "pick.centres");
+  for (const std::string& fault : violations(options.particle_limits))
+    faults.push_back("particle_limits." + fault);
   if (!options.unit.empty() && !units::parse_length(options.unit)) {
     faults.push_back("unit: '" + options.unit + "' is not a length (nm, um, mm, m, px, angstrom)");
   }

@@ -178,7 +178,7 @@ LocalisationTable read_tables(const std::vector<std::string>& files, const ReadO
   if (!faults.empty()) throw Error(Fault::usage, "input." + faults.front(), "");
   if (files.empty()) throw Error(Fault::usage, "input.files", "names no file", "name at least one");
   const bool picked = options.particles == "picked";
-  if (picked && !options.pick.centres.empty() && files.size() > 1) {
+  if (picked && !options.pick.centres.empty() && files.size() > 1 && !options.channel.per_file) {
     throw Error(Fault::usage, "input.pick.centres", "is one list for several fields of view",
                 "read one file at a time");
   }
@@ -194,6 +194,8 @@ LocalisationTable read_tables(const std::vector<std::string>& files, const ReadO
     LocalisationTable table = reader.read(file, options);
     table.formats.assign(1, std::string(reader.name));
     if (files.size() > 1 && table.size() > 0) equal.refuse(head);
+    filter_rows(table, options.filters);
+    merge_blinks(table, options.group);
     if (picked) {
       const auto centres = options.pick.centres.empty() ? find_centres(table, options.pick)
                                                         : read_centres(options.pick.centres, options, table);

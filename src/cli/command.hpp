@@ -10,6 +10,8 @@ namespace polar::cli {
 using Action = std::function<int()>;
 
 void add_run(CLI::App& app, Action& action);
+void add_apply(CLI::App& app, Action& action);
+void add_batch(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);

@@ -29,7 +29,8 @@ int run(const Arguments& a) {
   result.render.voxel_nm = a.voxel_nm;
   std::vector<std::string> notes = result.warnings;  // what was assumed holds for every format
   for (const std::string& format : a.formats)
-    for (const std::string& name : write_format(format, output, result.superparticle, result.render, notes))
+    for (const std::string& name :
+         write_format(format, output, {result.superparticle, result.render, result.poses}, notes))
       std::printf("%s/%s\n", output.c_str(), name.c_str());
   for (const std::string& note : notes) std::fprintf(stderr, "warning: %s\n", note.c_str());
   return 0;

@@ -35,8 +35,10 @@ int run_program(int argc, char** argv) {
   polar::cli::remember_command(argc, argv);
   polar::cli::Action action;
   polar::cli::add_run(app, action);
+  polar::cli::add_batch(app, action);
   polar::cli::add_simulate(app, action);
   polar::cli::add_export(app, action);
+  polar::cli::add_apply(app, action);
   polar::cli::add_report(app, action);
   polar::cli::add_evaluate(app, action);
   polar::cli::add_inspect(app, action);

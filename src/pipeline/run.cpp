@@ -11,8 +11,11 @@
 
 #include "checkpoint_store.hpp"
 #include "halves.hpp"
+#include "held_back.hpp"
+#include "initial_poses.hpp"
 #include "input_hash.hpp"
 #include "json_text.hpp"
+#include "labelling_text.hpp"
 #include "machine.hpp"
 #include "output_directory.hpp"
 #include "polar/core/median.hpp"
@@ -21,9 +24,13 @@
 #include "polar/pipeline/version.hpp"
 #include "polar/registration/prepare.hpp"
 #include "polar/report/page.hpp"
+#include "polar/results/labelling.hpp"
+#include "polar/results/mrc.hpp"
 #include "polar/results/result_file.hpp"
 #include "polar/results/results.hpp"
+#include "polar/results/sites.hpp"
 #include "polar/results/strangers.hpp"
+#include "polar/results/template_frame.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/table_reader.hpp"
@@ -48,11 +55,14 @@ class Stopwatch {
 std::string computation_text(RunConfig config) {
   OutputOptions computed;  // of the output, only this is a computation
   computed.resolution = config.output.resolution;
+  computed.frame = config.output.frame;
+  computed.labels_per_site = config.output.labels_per_site;
   config.output = computed;
   const auto name_only = [](std::string& file) { file = std::filesystem::path(file).filename().string(); };
   std::for_each(config.files.begin(), config.files.end(), name_only);
   name_only(config.read.pick.centres);
   name_only(config.registration.weights);
+  name_only(config.initial_poses);
   return run_config_text(config);
 }
 
@@ -60,13 +70,14 @@ std::string computation_text(RunConfig config) {
 std::vector<std::string> input_files(const RunConfig& config) {
   std::vector<std::string> files = config.files;
   if (!config.read.pick.centres.empty()) files.push_back(config.read.pick.centres);
+  if (!config.initial_poses.empty()) files.push_back(config.initial_poses);
   if (needs_weights(config.registration)) files.push_back(weights_path(config.registration.weights));
   return files;
 }
 
 // Whether the directory holds a complete result of this very computation.
-bool is_complete_of(const pipeline::OutputDirectory& directory, const std::string& hash) {
-  std::ifstream in(directory.file(kSummary));
+bool is_complete_of(const std::string& directory, const std::string& hash) {
+  std::ifstream in(directory + "/" + kSummary);
   if (!in) return false;
   const nlohmann::json summary = nlohmann::json::parse(in, nullptr, false);
   if (!summary.is_object() || !summary.contains("input_hash")) return false;
@@ -143,6 +154,30 @@ std::string resolution_line(const ResolutionReport& r) {
          (r.supported() ? "" : ": no structure is resolved");
 }
 
+// Medians over the accepted particles.
+struct Precision {
+  double rotation_std_deg = 0, translation_std_nm = 0;
+};
+
+Precision median_precision(const Results& r) {
+  std::vector<double> rotation, translation;
+  for (const PoseRow& row : pose_rows(r))
+    if (row.accepted) {
+      rotation.push_back(row.rotation_std_deg);
+      translation.push_back(row.translation_std_nm);
+    }
+  return {upper_median(rotation), upper_median(translation)};
+}
+
+nlohmann::json calibration_json(const Results& r) {
+  const Calibration& c = r.registration.calibration;
+  const double scale_nm = r.normalisation.scale_nm;
+  return {{"lateral_factor", c.lateral_factor},
+          {"axial_factor", c.axial_factor},
+          {"lateral_extra_nm", scale_nm * c.lateral_extra},
+          {"axial_extra_nm", scale_nm * c.axial_extra}};
+}
+
 constexpr std::size_t kStrangersShown = 10;
 
 std::string strangers_line(const std::vector<Stranger>& found) {
@@ -163,14 +198,9 @@ std::vector<std::string> describe(const Results& r, const std::vector<Stranger>&
                                     std::to_string(n) + " accepted"};
   for (const auto& [count, reason] : rejections(r))
     lines.push_back("rejected     " + std::to_string(count) + ": " + reason);
-  std::vector<double> rotation, translation;
-  for (const PoseRow& row : pose_rows(r))
-    if (row.accepted) {
-      rotation.push_back(row.rotation_std_deg);
-      translation.push_back(row.translation_std_nm);
-    }
-  lines.push_back("precision    " + format("%.2f deg, ", upper_median(rotation)) +
-                  format("%.2f nm", upper_median(translation)) +
+  const Precision precision = median_precision(r);
+  lines.push_back("precision    " + format("%.2f deg, ", precision.rotation_std_deg) +
+                  format("%.2f nm", precision.translation_std_nm) +
                   " (median of the estimated standard deviations)");
   if (!unlike.empty()) lines.push_back(strangers_line(unlike));
   lines.push_back("start        " + winner(g) + " won of " + std::to_string(g.starts.size()) +
@@ -202,6 +232,7 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
                       {"gain", s.gain},
                       {"gain_std", s.gain_std},
                       {"won", s.won}});
+  const Precision precision = median_precision(r);
   nlohmann::json summary = {{"program", r.provenance.program},
                             {"input_hash", r.provenance.input_hash},
                             {"seed", r.provenance.seed},
@@ -218,6 +249,10 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
                             {"stopped_because", g.stopped_because},
                             {"starts", starts},
                             {"starts_agreement", g.agreement},
+                            {"precision",
+                             {{"rotation_std_deg", number_or_null(precision.rotation_std_deg)},
+                              {"translation_std_nm", number_or_null(precision.translation_std_nm)}}},
+                            {"calibration", calibration_json(r)},
                             {"timings", timings},
                             {"warnings", g.warnings},
                             {"seconds", seconds},
@@ -241,16 +276,50 @@ Results compute(const RunConfig& config, const std::string& hash, Progress& prog
                 const Engine& engine) {
   Results r;
   r.particles = read_particles(config, progress);
+  r.channel_column = smlm::channel_column(config.read.channel);
+  pipeline::HeldBack held_back(r.particles, config.read.channel, config.read.particle_limits, progress);
   Views views = prepare_views(r.particles, {});
   PartOfCheckpoint all(checkpoint, "all");
-  r.registration = engine(views, config.registration, progress, all);
+  r.registration = config.initial_poses.empty()
+                       ? engine(views, config.registration, progress, all)
+                       : register_from(views,
+                                       pipeline::initial_poses(config.initial_poses, r.particles.particles,
+                                                               views.normalisation, progress),
+                                       config.registration, progress);
   r.normalisation = std::move(views.normalisation);
   r.planar = views.planar;
   r.provenance = {program_version(), run_config_text(config), config.registration.seed, hash,
                   library_versions()};
   if (config.output.resolution == "halves" && accepted_particles(r) > 0 && !progress.cancelled())
     r.resolution = pipeline::resolve_halves(r.particles, config.registration, progress, checkpoint, engine);
+  if (progress.cancelled()) return r;
+  held_back.put_back(r);
+  if (config.output.frame == "own" && accepted_particles(r) > 0)
+    move_template(r.registration, own_frame_from_template(r.registration, r.planar));
   return r;
+}
+
+// What a result is written from, made once.
+struct Products {
+  smlm::LocalisationTable superparticle;
+  RenderOptions render;
+  DiscreteSites sites;
+  std::optional<Labelling> labelling;  // where the template is discrete
+};
+
+Products products_of(const Results& r, const RunConfig& config) {
+  Products p;
+  p.superparticle = superparticle(r);
+  p.render = calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm);
+  p.render.voxel_nm = config.output.voxel_nm;
+  p.render.channel_column = r.channel_column;
+  p.sites = find_sites(p.superparticle, p.render);
+  const bool counted =
+      std::any_of(p.sites.occupied.begin(), p.sites.occupied.end(), [](int n) { return n > 0; });
+  if (counted)
+    p.labelling = labelling_efficiency(p.sites.occupied, static_cast<int>(p.sites.site.size()),
+                                       config.output.labels_per_site);
+  return p;
 }
 
 // Poses, record and page: also of a run in which no particle has a pose.
@@ -276,25 +345,39 @@ std::vector<std::string> write_account(const Results& r, const RunConfig& config
   return written;
 }
 
-std::vector<std::string> write(const Results& r, const RunConfig& config,
+std::vector<std::string> write(const Results& r, const Products& p, const RunConfig& config,
                                const pipeline::OutputDirectory& directory, Progress& progress) {
-  const smlm::LocalisationTable aligned = superparticle(r);
-  RenderOptions render = calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm);
-  render.voxel_nm = config.output.voxel_nm;
-  std::vector<std::string> written = write_account(r, config, directory, aligned);
+  const ExportInput input{p.superparticle, p.render, pose_rows(r), &p.sites};
+  std::vector<std::string> written = write_account(r, config, directory, p.superparticle);
   std::vector<std::string> formats = config.output.formats;
   if (config.output.preview && std::find(formats.begin(), formats.end(), "png") == formats.end())
     formats.emplace_back("png");
   for (const std::string& format : formats) {
     if (format == "hdf5") continue;  // above
     std::vector<std::string> notes;
-    for (const std::string& name : write_format(format, config.output.directory, aligned, render, notes))
+    for (const std::string& name : write_format(format, config.output.directory, input, notes))
       written.push_back(name);
     for (const std::string& note : notes) progress.note("warning: " + note);
+    if (format == "mrc" && r.resolution && !r.resolution->data.first_density.density.empty()) {
+      write_mrc(directory.file(half_map_files()[0]), r.resolution->data.first_density);
+      write_mrc(directory.file(half_map_files()[1]), r.resolution->data.second_density);
+      written.insert(written.end(), half_map_files().begin(), half_map_files().end());
+    }
   }
   return written;
 }
 }  // namespace
+
+Engine default_engine() {
+  return [](const Views& views, const RegistrationOptions& options, Progress& p, Checkpoint& checkpoint) {
+    return register_views(views, options, p, checkpoint);
+  };
+}
+
+bool is_complete(const RunConfig& config) {
+  return is_complete_of(config.output.directory,
+                        pipeline::input_hash(input_files(config), computation_text(config)).both);
+}
 
 RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress, const Engine& engine) {
   const Stopwatch watch;
@@ -303,7 +386,7 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   pipeline::CheckpointStore checkpoint(directory, {program_version(), hash.files, hash.configuration});
   if (!flags.resume) {
     checkpoint.remove();
-  } else if (is_complete_of(directory, hash.both)) {
+  } else if (is_complete_of(config.output.directory, hash.both)) {
     checkpoint.remove();
     return {false, false, {"results      " + config.output.directory + " (complete already)"}};
   } else if (!checkpoint.resume(progress)) {
@@ -326,12 +409,16 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
     throw smlm::Error(smlm::Fault::numerical, config.files.front(), "no particle could be registered",
                       reasons.empty() ? "" : "most were rejected because: " + reasons.front().second);
   }
-  const std::vector<std::string> written = write(r, config, directory, progress);
+  const Products products = products_of(r, config);
+  const std::vector<std::string> written = write(r, products, config, directory, progress);
   const double seconds = watch.seconds();
   const std::vector<Stranger> unlike = strangers(pose_rows(r));
-  const std::vector<std::string> lines = describe(r, unlike, config.output.directory, seconds);
-  smlm::write_file_atomically(directory.file(kSummary),
-                              pipeline::json_text(summary_json(r, unlike, lines, written, seconds)));
+  std::vector<std::string> lines = describe(r, unlike, config.output.directory, seconds);
+  const std::vector<std::string> labels = pipeline::labelling_lines(products.sites, products.labelling);
+  lines.insert(lines.end() - 2, labels.begin(), labels.end());
+  nlohmann::json summary = summary_json(r, unlike, lines, written, seconds);
+  pipeline::add_labelling(summary, products.sites, products.labelling);
+  smlm::write_file_atomically(directory.file(kSummary), pipeline::json_text(summary));
   std::vector<std::string> kept = written;
   kept.emplace_back(kSummary);
   directory.remove_other_results(kept);
@@ -340,10 +427,7 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
 }
 
 RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress) {
-  return run(config, flags, progress,
-             [](const Views& views, const RegistrationOptions& options, Progress& p, Checkpoint& checkpoint) {
-               return register_views(views, options, p, checkpoint);
-             });
+  return run(config, flags, progress, default_engine());
 }
 
 }  // namespace polar

@@ -7,6 +7,7 @@
 #include "config/fields.hpp"
 #include "config/paths.hpp"
 #include "polar/pipeline/outputs.hpp"
+#include "run_config_tree.hpp"
 #include "smlm/error.hpp"
 
 namespace polar {
@@ -36,6 +37,20 @@ void fields(Visitor& v, RunConfig& c) {
     });
     s.field("unassigned_particle", o.unassigned_particle);
     s.field("drop_nonfinite", o.drop_nonfinite);
+    s.bounds("filters", o.filters);
+    s.section("group", [&](auto& group) {
+      group.field("distance", o.group.distance);
+      group.field("dark_frames", o.group.dark_frames);
+    });
+    s.section("channel", [&](auto& channel) {
+      channel.field("column", o.channel.column);
+      channel.field("per_file", o.channel.per_file);
+      channel.field("register", o.channel.registering);
+    });
+    s.section("particle_limits", [&](auto& limits) {
+      limits.bounds("localisations", o.particle_limits.localisations);
+      limits.bounds("radius_nm", o.particle_limits.radius_nm);
+    });
     s.field("assumed_sigma_nm", o.assumed_sigma_nm);
     s.field("minflux_z_factor", o.minflux_z_factor);
   });
@@ -50,6 +65,7 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("tilt_deg", o.tilt_deg);
     s.field("flip", o.flip);
     s.field("weights", o.weights);
+    s.field("initial_poses", c.initial_poses);
     s.section("latent", [&](auto& latent) {
       latent.field("template", o.latent.template_kind);
       latent.field("noise", o.latent.noise);
@@ -72,6 +88,8 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("formats", c.output.formats);
     s.field("voxel_nm", c.output.voxel_nm);
     s.field("preview", c.output.preview);
+    s.field("frame", c.output.frame);
+    s.field("labels_per_site", c.output.labels_per_site);
     s.field("report", c.output.report);
     s.field("resolution", c.output.resolution);
   });
@@ -99,43 +117,54 @@ void check(const RunConfig& c, const std::string& path) {
   if (c.files.empty()) faults.emplace_back("input.files is missing: list the localisation tables");
   check_input(c.read, faults);
   for (const std::string& v : violations(c.registration)) faults.push_back(v);
+  if (!c.initial_poses.empty() && c.registration.method != "likelihood")
+    faults.emplace_back("registration.initial_poses needs registration.method: likelihood");
   check_formats(c.output.formats, faults);
   if (c.output.resolution != "none" && c.output.resolution != "halves")
     faults.push_back("output.resolution is '" + c.output.resolution + "', expected none or halves");
+  if (c.output.frame != "own" && c.output.frame != "raw")
+    faults.push_back("output.frame is '" + c.output.frame + "', expected own or raw");
+  if (c.output.labels_per_site < 1) faults.emplace_back("output.labels_per_site must be 1 or more");
   if (!(c.output.voxel_nm >= 0)) faults.emplace_back("output.voxel_nm must be 0 or more");
   if (c.output.directory.empty()) faults.emplace_back("output.directory is empty");
   smlm::throw_if_any(faults, smlm::Fault::usage, path);
 }
 
-// Puts what the tree and the overrides say into `config`.
-void read_fields(pipeline::Node root, const std::vector<std::string>& overrides, const std::string& where,
-                 RunConfig& config) {
-  for (const std::string& assignment : overrides) pipeline::apply_override(root, assignment);
+// Puts what the tree says into `config`.
+void read_fields(const pipeline::Node& root, const std::string& where, RunConfig& config) {
   pipeline::FieldReader reader(root, where);
   fields(reader, config);
   reader.finish();
 }
 }  // namespace
 
-RunConfig load_run_config(const std::string& path, const std::vector<std::string>& overrides) {
+RunConfig pipeline::run_config_of(const Node& root, const std::string& where, const std::string& folder) {
   RunConfig config;
-  read_fields(pipeline::load_yaml(path), overrides, path, config);
-  check(config, path);
-  const std::string folder = pipeline::folder_of(path);
+  read_fields(root, where, config);
+  check(config, where);
   if (!config.read.pick.centres.empty())
     config.read.pick.centres = pipeline::resolve_path(config.read.pick.centres, folder);
   if (!config.registration.weights.empty())
     config.registration.weights = pipeline::resolve_path(config.registration.weights, folder);
+  if (!config.initial_poses.empty())
+    config.initial_poses = pipeline::resolve_path(config.initial_poses, folder);
   config.files = pipeline::expand_files(config.files, folder, &config.patterns);
   config.output.directory = pipeline::resolve_path(config.output.directory, folder);
   return config;
 }
 
+RunConfig load_run_config(const std::string& path, const std::vector<std::string>& overrides) {
+  pipeline::Node root = pipeline::load_yaml(path);
+  for (const std::string& assignment : overrides) pipeline::apply_override(root, assignment);
+  return pipeline::run_config_of(root, path, pipeline::folder_of(path));
+}
+
 smlm::ReadOptions read_options(const std::vector<std::string>& overrides) {
   pipeline::Node nothing;
   nothing.kind = pipeline::Node::Kind::map;
+  for (const std::string& assignment : overrides) pipeline::apply_override(nothing, assignment);
   RunConfig config;
-  read_fields(std::move(nothing), overrides, "--set", config);
+  read_fields(nothing, "--set", config);
   std::vector<std::string> faults;
   if (!config.files.empty()) faults.emplace_back("input.files: the tables are named as arguments");
   check_input(config.read, faults);

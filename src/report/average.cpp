@@ -55,8 +55,8 @@ Section average_section(const Subject& subject) {
   s.notes.push_back(subject.frame.sentence);
   RenderOptions options = subject.record.result.render;
   options.most_voxels_per_axis = subject.points.planar ? kMostPlanarVoxels : kMostVoxels;
-  const std::vector<Channel> channels = channels_of(subject.points, subject.record.channel_column);
-  const std::vector<Volume> volumes = render_channels(subject.points, channels, options);
+  const std::vector<Channel> channels = tinted_channels(subject.points, subject.record.channel_column);
+  const std::vector<Volume> volumes = volumes_of(subject.points, channels, options);
   const Volume& box = volumes.front();
   s.notes.push_back(
       "Every localisation is a Gaussian of its own uncertainty, as the run found it to be; voxels of " +

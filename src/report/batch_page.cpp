@@ -104,10 +104,11 @@ std::string datasets_json(const BatchRecord& batch) {
   const auto head = [&](const char* name, bool number) {
     heads.push_back({{"name", name}, {"number", number}});
   };
-  head("data set", false), head("average", false), head("condition", false), head("state", false);
+  head("data set", false), head("average", false), head("condition", false), head("state", false),
+      head("reason", false);
   head("particles", true), head("accepted", true), head("localisations", true), head("resolution [nm]", true);
   head("place [nm]", true), head("rotation [deg]", true), head("symmetry", false), head("labelling", true);
-  head("seconds", true), head("reason", false);
+  head("seconds", true);
   const auto number = [](double v) { return rounded_json(v, 4); };
   for (const BatchDataset& d : batch.datasets) {
     json name = {{"text", d.name}};
@@ -116,11 +117,11 @@ std::string datasets_json(const BatchRecord& batch) {
         d.thumbnail_png.empty()
             ? json()
             : json({{"text", "average of " + d.name}, {"picture", png_uri(d.thumbnail_png)}});
-    rows.push_back({name, picture, d.condition, d.state, number(value_of(d, "particles")),
+    rows.push_back({name, picture, d.condition, d.state, d.reason, number(value_of(d, "particles")),
                     number(value_of(d, "accepted")), number(value_of(d, "localisations")),
                     number(value_of(d, "resolution_nm")), number(value_of(d, "translation_std_nm")),
                     number(value_of(d, "rotation_std_deg")), d.symmetry,
-                    number(value_of(d, "labelling_efficiency")), number(value_of(d, "seconds")), d.reason});
+                    number(value_of(d, "labelling_efficiency")), number(value_of(d, "seconds"))});
   }
   return script_json({{"heads", heads}, {"rows", rows}});
 }

@@ -19,7 +19,7 @@ const smlm::ExtraColumn* column_named(const smlm::LocalisationTable& table, cons
 }
 }  // namespace
 
-std::vector<Channel> channels_of(const smlm::LocalisationTable& table, const std::string& name) {
+std::vector<Channel> tinted_channels(const smlm::LocalisationTable& table, const std::string& name) {
   const Channel all{"all", "t0", kTints[0], std::vector<bool>(table.size(), true)};
   const smlm::ExtraColumn* column = column_named(table, name);
   if (!column) return {all};
@@ -43,8 +43,8 @@ std::vector<Channel> channels_of(const smlm::LocalisationTable& table, const std
   return channels;
 }
 
-std::vector<Volume> render_channels(const smlm::LocalisationTable& table,
-                                    const std::vector<Channel>& channels, const RenderOptions& options) {
+std::vector<Volume> volumes_of(const smlm::LocalisationTable& table, const std::vector<Channel>& channels,
+                               const RenderOptions& options) {
   const Volume whole = render(table, options);
   if (channels.size() == 1) return {whole};
   std::vector<Volume> volumes;

@@ -17,10 +17,10 @@ struct Channel {
 };
 
 /// One channel of everything where there is no such column, or more than four values.
-std::vector<Channel> channels_of(const smlm::LocalisationTable& table, const std::string& column);
+std::vector<Channel> tinted_channels(const smlm::LocalisationTable& table, const std::string& column);
 
 /// One volume a channel, all of one grid.
-std::vector<Volume> render_channels(const smlm::LocalisationTable& table,
-                                    const std::vector<Channel>& channels, const RenderOptions& options);
+std::vector<Volume> volumes_of(const smlm::LocalisationTable& table, const std::vector<Channel>& channels,
+                               const RenderOptions& options);
 
 }  // namespace polar::report

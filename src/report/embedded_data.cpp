@@ -70,7 +70,7 @@ std::string turntable_json(const Subject& subject) {
   std::vector<double> distance;
   for (const auto& x : t.position_nm) distance.push_back(std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
   const double half_nm = std::max(1e-6, quantile(distance, kHeld));
-  const std::vector<Channel> channels = channels_of(t, subject.record.channel_column);
+  const std::vector<Channel> channels = tinted_channels(t, subject.record.channel_column);
   std::string points, channel;
   std::size_t n = 0;
   const std::size_t stride = (t.size() + kMostPoints - 1) / kMostPoints;

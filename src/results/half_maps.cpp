@@ -99,7 +99,9 @@ DrawnShells shells_between(const Table& a, const RenderOptions& drawing_a, const
                            const RenderOptions& drawing_b, std::size_t most_voxels) {
   if (a.size() == 0 || b.size() == 0) return {};
   const Volume grid = cube(a, b, most_voxels);
-  return {grid.voxel_nm, fourier_shells(drawn_inside(a, grid, drawing_a), drawn_inside(b, grid, drawing_b))};
+  DrawnShells out{grid.voxel_nm, drawn_inside(a, grid, drawing_a), drawn_inside(b, grid, drawing_b), {}};
+  out.shells = fourier_shells(out.first, out.second);
+  return out;
 }
 
 HalfMaps compare_half_maps(const Results& first, const Results& second, std::uint64_t seed) {
@@ -113,6 +115,7 @@ HalfMaps compare_half_maps(const Results& first, const Results& second, std::uin
   };
   DrawnShells drawn = shells_between(a, drawing(first), b, drawing(second));
   out.voxel_nm = drawn.voxel_nm;
+  out.first_density = std::move(drawn.first), out.second_density = std::move(drawn.second);
   out.shells = std::move(drawn.shells);
   out.resolution = shell_resolution(out.shells);
   return out;

@@ -2,16 +2,9 @@
 
 #include <cmath>
 
-namespace polar::results {
+#include "smlm/column.hpp"
 
-const smlm::ExtraColumn* find_column(const smlm::LocalisationTable& table, smlm::Quantity quantity) {
-  for (const smlm::ExtraColumn& column : table.extra) {
-    if (!column.labels.empty()) continue;
-    const auto match = smlm::match_heading(smlm::parse_heading(column.name));
-    if (match && match->quantity == quantity) return &column;
-  }
-  return nullptr;
-}
+namespace polar::results {
 
 const smlm::ExtraColumn* find_length_nm(const smlm::LocalisationTable& table, const char* name) {
   for (const smlm::ExtraColumn& column : table.extra) {

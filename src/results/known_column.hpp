@@ -1,13 +1,9 @@
 // Columns of the input that other programs' files ask for, found by what they mean.
 #pragma once
 
-#include "smlm/column.hpp"
-#include "smlm/localisation_table.hpp"
+#include "smlm/kept_column.hpp"
 
 namespace polar::results {
-
-/// The first kept column of numbers that means `quantity`; null where none does.
-const smlm::ExtraColumn* find_column(const smlm::LocalisationTable& table, smlm::Quantity quantity);
 
 /// The column with this normalised name (see smlm::Heading) in nm; null where none has.
 const smlm::ExtraColumn* find_length_nm(const smlm::LocalisationTable& table, const char* name);

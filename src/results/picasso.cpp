@@ -95,9 +95,9 @@ void write_picasso(const std::string& path, const smlm::LocalisationTable& table
     lpy[i] = std::sqrt(c[3]) / static_cast<float>(kPicassoPixel_nm);
     lpz[i] = std::sqrt(c[5]);
   }
-  const auto frame = column_or<std::uint32_t>(results::find_column(table, smlm::Quantity::frame), n, 0);
-  const auto photons = column_or<float>(results::find_column(table, smlm::Quantity::photons), n, 1);
-  const auto background = column_or<float>(results::find_column(table, smlm::Quantity::background), n, 0);
+  const auto frame = column_or<std::uint32_t>(smlm::find_column(table, smlm::Quantity::frame), n, 0);
+  const auto photons = column_or<float>(smlm::find_column(table, smlm::Quantity::photons), n, 1);
+  const auto background = column_or<float>(smlm::find_column(table, smlm::Quantity::background), n, 0);
   const std::vector<float> one(n, 1.0f);
   const std::vector<std::int32_t> numbers = picasso_groups(table.particle_names);
   std::vector<std::int32_t> group;

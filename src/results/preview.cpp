@@ -54,7 +54,37 @@ double sample(const Panel& p, double u, double v) {
          fv * ((1 - fu) * at(u0, v1) + fu * at(u1, v1));
 }
 
-void draw(Canvas& canvas, const Panel& p, std::size_t left, double zoom, double brightest) {
+// Colours of several channels; two that meet add up to a third.
+constexpr Colour kChannel[] = {{0, 255, 0},   {255, 0, 255}, {0, 255, 255},
+                               {255, 255, 0}, {255, 80, 0},  {0, 80, 255}};
+
+Colour channel_colour(std::size_t channel) {
+  return kChannel[channel % (sizeof kChannel / sizeof *kChannel)];
+}
+
+// What one channel alone shows in one direction, and its brightest value in any.
+struct Layer {
+  Panel panel;
+  double brightest = 0;
+};
+
+Colour blended(const std::vector<Layer>& layers, double u, double v) {
+  double red = 0, green = 0, blue = 0;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const double brightest = layers[i].brightest;
+    const double share = std::pow(brightest > 0 ? sample(layers[i].panel, u, v) / brightest : 0, kGamma);
+    if (layers.size() == 1) return results::heat(share);
+    const Colour c = channel_colour(i);
+    red += share * c.red, green += share * c.green, blue += share * c.blue;
+  }
+  const auto byte = [](double value) {
+    return static_cast<std::uint8_t>(std::lround(std::min(value, 255.0)));
+  };
+  return {byte(red), byte(green), byte(blue)};
+}
+
+void draw(Canvas& canvas, const std::vector<Layer>& layers, std::size_t left, double zoom) {
+  const Panel& p = layers.front().panel;
   const auto width = static_cast<std::size_t>(std::lround(zoom * static_cast<double>(p.width)));
   const auto height = static_cast<std::size_t>(std::lround(zoom * static_cast<double>(p.height)));
   canvas.fill(left - 1, kGap_px - 1, width + 2, height + 2, kFrame);
@@ -62,43 +92,48 @@ void draw(Canvas& canvas, const Panel& p, std::size_t left, double zoom, double 
     for (std::size_t x = 0; x < width; ++x) {
       const double u = (static_cast<double>(x) + 0.5) / zoom - 0.5;
       const double v = (static_cast<double>(height - 1 - y) + 0.5) / zoom - 0.5;
-      const double share = brightest > 0 ? sample(p, u, v) / brightest : 0;
-      canvas.set(left + x, kGap_px + y, results::heat(std::pow(share, kGamma)));
+      canvas.set(left + x, kGap_px + y, blended(layers, u, v));
     }
   canvas.text(left + 4, kGap_px + 4, std::string(p.across) + p.up, kText, kWhite);
 }
 }  // namespace
 
-void write_preview_png(const std::string& path, const Volume& volume) {
-  std::vector<Panel> panels = {project(volume, 0, 1, "x", "y")};
-  if (!volume.planar) {
-    panels.push_back(project(volume, 0, 2, "x", "z"));
-    panels.push_back(project(volume, 1, 2, "y", "z"));
+void write_preview_png(const std::string& path, const std::vector<ChannelVolume>& channels) {
+  std::vector<std::vector<Layer>> panels(channels.front().volume.planar ? 1 : 3);
+  for (const ChannelVolume& channel : channels) {
+    const Volume& v = channel.volume;
+    panels[0].push_back({project(v, 0, 1, "x", "y")});
+    if (panels.size() > 1) {
+      panels[1].push_back({project(v, 0, 2, "x", "z")});
+      panels[2].push_back({project(v, 1, 2, "y", "z")});
+    }
+    double brightest = 0;
+    for (const auto& layers : panels)
+      for (const float value : layers.back().panel.value) brightest = std::max(brightest, double(value));
+    for (auto& layers : panels) layers.back().brightest = brightest;
   }
   std::size_t longest = 1, tallest = 1;
-  double brightest = 0;
-  for (const Panel& p : panels) {
-    longest = std::max({longest, p.width, p.height});
-    tallest = std::max(tallest, p.height);
-    brightest = std::max(brightest, double(*std::max_element(p.value.begin(), p.value.end())));
+  for (const auto& layers : panels) {
+    longest = std::max({longest, layers[0].panel.width, layers[0].panel.height});
+    tallest = std::max(tallest, layers[0].panel.height);
   }
   const double zoom = static_cast<double>(kPanel_px) / static_cast<double>(longest);
   const auto scaled = [&](std::size_t voxels) {
     return static_cast<std::size_t>(std::lround(zoom * static_cast<double>(voxels)));
   };
   std::size_t width = kGap_px;
-  for (const Panel& p : panels) width += scaled(p.width) + kGap_px;
+  for (const auto& layers : panels) width += scaled(layers[0].panel.width) + kGap_px;
   const std::size_t bottom = kGap_px + scaled(tallest);
-  const double pixels_per_nm = zoom / volume.voxel_nm;
+  const double pixels_per_nm = zoom / channels.front().volume.voxel_nm;
   const double bar_nm = round_length(kBarShare * static_cast<double>(scaled(longest)) / pixels_per_nm);
   const std::string label = length_label(bar_nm);
   const auto bar_px = static_cast<std::size_t>(std::lround(bar_nm * pixels_per_nm));
   width = std::max(width, 2 * kGap_px + std::max(bar_px, Canvas::text_width(label, kText)));
   Canvas canvas(width, bottom + kLegend_px);
   std::size_t left = kGap_px;
-  for (const Panel& p : panels) {
-    draw(canvas, p, left, zoom, brightest);
-    left += scaled(p.width) + kGap_px;
+  for (const auto& layers : panels) {
+    draw(canvas, layers, left, zoom);
+    left += scaled(layers[0].panel.width) + kGap_px;
   }
   canvas.fill(kGap_px, bottom + kGap_px, bar_px, kBar_px, kWhite);
   canvas.text(kGap_px, bottom + kGap_px + kBar_px + 4, label, kText, kWhite);

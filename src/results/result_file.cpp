@@ -128,6 +128,8 @@ void write_superparticle(File& file, const Results& r, const smlm::LocalisationT
   write_with_unit(file, group + "source_file", t.source_file, {n}, "1", "row of /input/file");
   write_with_unit(file, group + "source_row", t.source_row, {n}, "1", "data row in that file, from 1");
   file.write_attribute("/superparticle", "planar", static_cast<std::uint8_t>(r.planar ? 1 : 0));
+  if (!r.channel_column.empty())
+    file.write_string_attribute("/superparticle", "channel_column", r.channel_column);
   file.make_group("/superparticle/columns");
   for (std::size_t c = 0; c < t.extra.size(); ++c) {
     const std::string name =
@@ -260,6 +262,27 @@ T one_number(const File& file, const std::string& object, const char* name) {
   return values[0];
 }
 
+std::vector<PoseRow> read_poses(const File& file, const std::string& path,
+                                const std::vector<std::string>& names) {
+  const auto rotation = file.read<double>("/poses/rotation"), shift = file.read<double>("/poses/translation"),
+             likelihood = file.read<double>("/poses/log_likelihood");
+  const auto accepted = file.read<std::uint8_t>("/poses/accepted");
+  const std::size_t n = names.size();
+  if (rotation.size() != 9 * n || shift.size() != 3 * n || likelihood.size() != n || accepted.size() != n)
+    throw smlm::Error(smlm::Fault::input, path + ":/poses", "columns of different lengths", "run again");
+  std::vector<PoseRow> rows(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    rows[i].particle = names[i];
+    rows[i].accepted = accepted[i] != 0;
+    rows[i].log_likelihood = likelihood[i];
+    if (!rows[i].accepted) continue;
+    using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    rows[i].template_from_view =
+        Pose{Eigen::Map<const RowMajor>(&rotation[9 * i]), Eigen::Map<const Eigen::Vector3d>(&shift[3 * i])};
+  }
+  return rows;
+}
+
 std::string one_string(const File& file, const char* name) {
   const std::vector<std::string> values = file.read_strings(name);
   return values.empty() ? std::string() : values.front();
@@ -342,6 +365,9 @@ ResultRecord read_result_file(const std::string& path) {
   record.render.axial_factor = calibration("axial_factor");
   record.render.lateral_extra_nm = calibration("lateral_extra_nm");
   record.render.axial_extra_nm = calibration("axial_extra_nm");
+  if (file.has_attribute("/superparticle", "channel_column"))
+    record.render.channel_column = file.read_string_attribute("/superparticle", "channel_column");
+  record.poses = read_poses(file, path, t.particle_names);
   const auto centre = file.read<double>("/template/centre"), weight = file.read<double>("/template/weight");
   if (centre.size() != 3 * weight.size())
     throw smlm::Error(smlm::Fault::input, path + ":/template", "centres and weights differ in number",

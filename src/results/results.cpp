@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "polar/core/constants.hpp"
+#include "polar/core/so3.hpp"
 
 namespace polar {
 
@@ -47,7 +48,9 @@ smlm::LocalisationTable moved(smlm::LocalisationTable t, const Pose& pose) {
 Pose template_from_table(const Results& results, std::size_t i) {
   const Pose& engine = results.registration.view[i].template_from_view;
   const Normalisation& n = results.normalisation;
-  return {engine.rotation, n.scale_nm * engine.translation - engine.rotation * n.centre_nm[i]};
+  // Products of many turns leave 1e-7, which a particle far from the table's origin shows in picometres.
+  const Eigen::Matrix3d rotation = nearest_rotation(engine.rotation);
+  return {rotation, n.scale_nm * engine.translation - rotation * n.centre_nm[i]};
 }
 
 Eigen::Matrix<double, 6, 6> pose_covariance_nm(const Results& results, std::size_t i) {
@@ -86,21 +89,22 @@ TemplateSites template_sites(const Results& results) {
   return {scale_nm * fused.centre, fused.weight, scale_nm * fused.width};
 }
 
-smlm::LocalisationTable superparticle(const Results& results) {
-  const smlm::LocalisationTable& in = results.particles.table;
+smlm::LocalisationTable aligned(const smlm::ParticleSet& particles,
+                                const std::vector<std::optional<Pose>>& template_from_table) {
+  const smlm::LocalisationTable& in = particles.table;
   smlm::LocalisationTable out;
-  for (const smlm::Particle& p : results.particles.particles) out.particle_names.push_back(p.name);
+  for (const smlm::Particle& p : particles.particles) out.particle_names.push_back(p.name);
   out.files = in.files;
   out.formats = in.formats;
-  out.planar = results.planar;
+  out.planar = in.planar;
   for (const smlm::ExtraColumn& c : in.extra) {
     out.extra.push_back(c);
     out.extra.back().values.clear();
   }
-  for (std::size_t i = 0; i < results.particles.particles.size(); ++i) {
-    if (!results.registration.view[i].accepted) continue;
-    const Pose pose = template_from_table(results, i);
-    for (const std::uint32_t row : results.particles.particles[i].rows) {
+  for (std::size_t i = 0; i < particles.particles.size(); ++i) {
+    if (!template_from_table[i]) continue;
+    const Pose& pose = *template_from_table[i];
+    for (const std::uint32_t row : particles.particles[i].rows) {
       const auto& x = in.position_nm[row];
       const Eigen::Vector3d moved = pose * Eigen::Vector3d(x[0], x[1], x[2]);
       out.position_nm.push_back({moved.x(), moved.y(), moved.z()});
@@ -112,6 +116,15 @@ smlm::LocalisationTable superparticle(const Results& results) {
         out.extra[c].values.push_back(in.extra[c].values[row]);
     }
   }
+  return out;
+}
+
+smlm::LocalisationTable superparticle(const Results& results) {
+  std::vector<std::optional<Pose>> pose(results.particles.particles.size());
+  for (std::size_t i = 0; i < pose.size(); ++i)
+    if (results.registration.view[i].accepted) pose[i] = template_from_table(results, i);
+  smlm::LocalisationTable out = aligned(results.particles, pose);
+  out.planar = results.planar;
   return out;
 }
 

@@ -21,9 +21,8 @@ Known known_columns(const smlm::LocalisationTable& table) {
   const ExtraColumn* width = results::find_length_nm(table, "sigma");
   const ExtraColumn* first = results::find_length_nm(table, "sigma1");
   const ExtraColumn* second = results::find_length_nm(table, "sigma2");
-  return {results::find_column(table, smlm::Quantity::frame),
-          results::find_column(table, smlm::Quantity::photons),
-          results::find_column(table, smlm::Quantity::background), first ? first : width,
+  return {smlm::find_column(table, smlm::Quantity::frame), smlm::find_column(table, smlm::Quantity::photons),
+          smlm::find_column(table, smlm::Quantity::background), first ? first : width,
           second ? second : width};
 }
 

@@ -40,9 +40,12 @@ std::string number(double value) {
 // "images": where that is given, ImageJ takes the slices to follow the first without a gap and reads the
 // directories between them as pixels. The origin is where x = y = z = 0 lies in pixels: measured = (pixel -
 // origin) * size with voxel centres at whole numbers.
-std::string description(const Volume& v) {
+std::string description(const std::vector<Volume>& channels) {
+  const Volume& v = channels.front();
   const auto [low, high] = std::minmax_element(v.density.begin(), v.density.end());
   std::string text = "ImageJ=1.53t\n";
+  if (channels.size() > 1)
+    text += "channels=" + std::to_string(channels.size()) + "\nhyperstack=true\nmode=composite\n";
   if (v.size[2] > 1) text += "slices=" + std::to_string(v.size[2]) + "\n";
   text += "unit=nm\nspacing=" + number(v.voxel_nm) + "\nloop=false\n";
   text += "min=" + number(double(*low)) + "\nmax=" + number(double(*high)) + "\n";
@@ -52,7 +55,7 @@ std::string description(const Volume& v) {
   return text;
 }
 
-bool write_slice(TIFF* file, const Volume& v, std::size_t z) {
+bool write_slice(TIFF* file, const Volume& v, std::size_t z, const std::string& heading) {
   const auto width = static_cast<std::uint32_t>(v.size[0]), height = static_cast<std::uint32_t>(v.size[1]);
   const float pixels_per_nm = static_cast<float>(1 / v.voxel_nm);
   bool good =
@@ -68,7 +71,7 @@ bool write_slice(TIFF* file, const Volume& v, std::size_t z) {
       TIFFSetField(file, TIFFTAG_RESOLUTIONUNIT, RESUNIT_NONE) == 1 &&  // the description has the unit
       TIFFSetField(file, TIFFTAG_XRESOLUTION, pixels_per_nm) == 1 &&
       TIFFSetField(file, TIFFTAG_YRESOLUTION, pixels_per_nm) == 1;
-  if (z == 0) good = good && TIFFSetField(file, TIFFTAG_IMAGEDESCRIPTION, description(v).c_str()) == 1;
+  if (!heading.empty()) good = good && TIFFSetField(file, TIFFTAG_IMAGEDESCRIPTION, heading.c_str()) == 1;
   const std::size_t pixels = v.size[0] * v.size[1];
   std::vector<float> slice(v.density.begin() + static_cast<std::ptrdiff_t>(z * pixels),
                            v.density.begin() + static_cast<std::ptrdiff_t>((z + 1) * pixels));
@@ -78,8 +81,9 @@ bool write_slice(TIFF* file, const Volume& v, std::size_t z) {
 }
 }  // namespace
 
-void write_imagej_tiff(const std::string& path, const Volume& volume) {
-  if (volume.density.size() * sizeof(float) > kMostBytes)
+void write_imagej_tiff(const std::string& path, const std::vector<Volume>& channels) {
+  const Volume& first = channels.front();
+  if (channels.size() * first.density.size() * sizeof(float) > kMostBytes)
     throw smlm::Error(smlm::Fault::io, path, "a stack of more than 4 GiB is no TIFF",
                       "choose a larger voxel");
   TIFFSetErrorHandler(nullptr);  // it prints; what failed is said here
@@ -88,8 +92,13 @@ void write_imagej_tiff(const std::string& path, const Volume& volume) {
   {
     const File file(TIFFOpen(atomic.temporary_path().c_str(), "wl"));  // little endian on any machine
     if (!file) fail(path, "the stack cannot be opened");
-    for (std::size_t z = 0; z < volume.size[2]; ++z)
-      if (!write_slice(file.get(), volume, z)) fail(path, "writing slice " + std::to_string(z) + " failed");
+    std::string heading = description(channels);
+    for (std::size_t z = 0; z < first.size[2]; ++z)
+      for (const Volume& channel : channels) {
+        if (!write_slice(file.get(), channel, z, heading))
+          fail(path, "writing slice " + std::to_string(z) + " failed");
+        heading.clear();
+      }
   }
   atomic.commit();
 }

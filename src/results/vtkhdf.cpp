@@ -53,6 +53,15 @@ void write_point_data(File& file, const smlm::LocalisationTable& table) {
              std::vector<std::int64_t>(table.source_row.begin(), table.source_row.end()));
   for (const smlm::ExtraColumn& c : table.extra) file.write(link_name(results::heading(c), used), c.values);
 }
+
+void write_density(File& file, const std::string& name, const Volume& volume) {
+  file.write(name, volume.density, {volume.size[2], volume.size[1], volume.size[0]});
+  constexpr double kMicrometresPerNanometre = 1e-3;
+  file.write_attribute(name, "element_size_um",
+                       std::vector<float>(3, static_cast<float>(volume.voxel_nm * kMicrometresPerNanometre)));
+  file.write_string_attribute(name, "unit",
+                              volume.planar ? "localisations per nm^2" : "localisations per nm^3");
+}
 }  // namespace
 
 void write_points_vtkhdf(const std::string& path, const smlm::LocalisationTable& table) {
@@ -78,7 +87,8 @@ void write_points_vtkhdf(const std::string& path, const smlm::LocalisationTable&
   atomic.commit();
 }
 
-void write_volume_vtkhdf(const std::string& path, const Volume& volume) {
+void write_volume_vtkhdf(const std::string& path, const Volume& volume,
+                         const std::vector<ChannelVolume>& channels) {
   smlm::AtomicFile atomic(path);
   File file = File::create(atomic);
   write_root(file, "ImageData");
@@ -92,13 +102,9 @@ void write_volume_vtkhdf(const std::string& path, const Volume& volume) {
                        std::vector<double>(volume.origin_nm.begin(), volume.origin_nm.end()));
   file.write_attribute("/VTKHDF", "Spacing", std::vector<double>(3, volume.voxel_nm));
   file.write_attribute("/VTKHDF", "Direction", std::vector<double>{1, 0, 0, 0, 1, 0, 0, 0, 1});
-  const std::string density = "/VTKHDF/PointData/density";
-  file.write(density, volume.density, {volume.size[2], volume.size[1], volume.size[0]});
-  constexpr double kMicrometresPerNanometre = 1e-3;
-  file.write_attribute(density, "element_size_um",
-                       std::vector<float>(3, static_cast<float>(volume.voxel_nm * kMicrometresPerNanometre)));
-  file.write_string_attribute(density, "unit",
-                              volume.planar ? "localisations per nm^2" : "localisations per nm^3");
+  std::set<std::string> used;
+  write_density(file, link_name("density", used), volume);
+  for (const ChannelVolume& c : channels) write_density(file, link_name("density_" + c.name, used), c.volume);
   file.close();
   atomic.commit();
 }

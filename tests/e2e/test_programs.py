@@ -2,13 +2,14 @@
 import csv
 import json
 import os
+import pathlib
 import subprocess
 import unittest
 
 from harness import PolarCase
 
 SMALL = "simulation: {particles: 6, blinks_mean: 3, cramer_rao: false}"
-ALL = "output: {formats: [hdf5, vtkhdf, csv, tiff, ply, picasso, thunderstorm]}\n"
+ALL = "output: {formats: [hdf5, vtkhdf, csv, tiff, ply, picasso, thunderstorm, mrc, star]}\n"
 
 
 def program(variable, what):
@@ -236,6 +237,125 @@ class Picasso(ProgramCase):
         lateral = [((a + b) / 2) ** 0.5 for a, b in zip(self.column("sigma_xx [nm^2]"), self.column("sigma_yy [nm^2]"))]
         self.assertAllClose(loaded["lpx"], lateral, 1e-3)
         self.assertEqual(loaded["photons"], self.column("intensity [photon]"))
+
+
+READERS = """
+import json, mrcfile, numpy, starfile
+with mrcfile.open("results/template.mrc") as map:
+    volume = {"valid": mrcfile.validate("results/template.mrc"), "shape": map.data.shape, "sum": float(map.data.sum(dtype=float)),
+              "voxel": float(map.voxel_size.x), "origin": [float(map.header.origin[k]) for k in "xyz"], "volume": bool(map.is_volume())}
+star = starfile.read("results/poses.star")
+p = star["particles"]
+out = {"map": volume, "pixel": float(star["optics"]["rlnImagePixelSize"].iloc[0]), "name": [str(n) for n in p["rlnTomoParticleName"]],
+       "coordinate": p[["rlnCoordinateX", "rlnCoordinateY", "rlnCoordinateZ"]].values.tolist(),
+       "angles": p[["rlnAngleRot", "rlnAngleTilt", "rlnAnglePsi"]].values.tolist()}
+print(json.dumps(out))
+"""
+
+
+@program("READERS_PYTHON", "mrcfile or starfile")
+class MapsAndStars(ProgramCase):
+    def test_mrcfile_and_starfile_read_what_was_written(self):
+        read = self.python("READERS_PYTHON", READERS)
+        volume = read["map"]
+        self.assertTrue(volume["valid"] and volume["volume"])
+        # A map in ångström holds as many localisations as there are: density times the voxel's volume.
+        self.assertLess(abs(volume["sum"] * (volume["voxel"] / 10) ** 3 / len(self.aligned) - 1), .05)
+        for axis, origin, size in zip("xyz", volume["origin"], volume["shape"][::-1]):
+            inside = [origin <= 10 * x <= origin + size * volume["voxel"] for x in self.column(f"{axis} [nm]")]
+            self.assertGreater(sum(inside), .98 * len(inside))
+        with (self.results / "poses.csv").open() as table:
+            poses = [row for row in csv.DictReader(table) if row["accepted"] == "1"]
+        self.assertEqual(read["name"], [row["particle"] for row in poses])
+        self.assertEqual(read["pixel"], 10)  # coordinates are in nm
+        for pose, at in zip(poses, read["coordinate"]):  # the template's origin, in the table
+            w, v = float(pose["qw"]), [float(pose[k]) for k in ("qx", "qy", "qz")]
+            cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+            turn = cross(v, at)
+            moved = [x + 2 * w * t + 2 * c + float(pose[k])
+                     for x, t, c, k in zip(at, turn, cross(v, turn), ("tx_nm", "ty_nm", "tz_nm"))]
+            self.assertLess(max(map(abs, moved)), 1e-6)
+
+
+MODULE = """
+import json, sys
+sys.path.insert(0, {scripts!r})
+import polar_results
+r = polar_results.load("results")
+first = next(i for i, ok in enumerate(r.accepted) if ok)
+rows = r.particle == first
+table = [[float(v) for v in line.split(",")[:3]] for line in open("data/localisations.csv").readlines()[1:]
+         if line.split(",")[6] == r.name[first]]
+moved = r.template_from_view[first].apply(table)
+map = polar_results.read_mrc("results/template.mrc")
+print(json.dumps({{"names": r.name, "accepted": r.accepted.tolist(), "n": len(r.position_nm), "columns": list(r.columns),
+                   "aligned": float(abs(moved - r.position_nm[rows]).max()), "particles": r.summary["particles"],
+                   "back": float(abs(r.template_from_view[first].inverse().apply(moved) - table).max()),
+                   "same": float(abs(map.density - r.template.density).max()), "voxel": [map.voxel_nm, r.template.voxel_nm],
+                   "origin": float(abs(map.origin_nm - r.template.origin_nm).max()),
+                   "halves": [h.density.shape for h in r.half_maps], "picture": polar_results.draw(r, "average.png")}}))
+"""
+
+
+@program("PICASSO_PYTHON", "NumPy, h5py and Matplotlib (with Picasso)")
+class ResultsModule(ProgramCase):
+    def test_arrays_are_the_result(self):
+        self.ok("run", "run.yaml", "--overwrite", "--set", "output.resolution=halves", "--set", "registration.starts=[imaged]")
+        scripts = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+        read = self.python("PICASSO_PYTHON", MODULE.format(scripts=str(scripts)))
+        with (self.results / "poses.csv").open() as table:
+            poses = list(csv.DictReader(table))
+        self.assertEqual(read["names"], [row["particle"] for row in poses])
+        self.assertEqual(read["accepted"], [row["accepted"] == "1" for row in poses])
+        self.assertEqual((read["particles"], read["n"]), (6, len(list(csv.DictReader((self.results / "aligned.csv").open())))))
+        self.assertIn("frame", read["columns"])
+        self.assertLess(max(read["aligned"], read["back"]), 1e-3)
+        self.assertLess(read["same"], 1e-9)
+        self.assertLess(max(abs(read["voxel"][0] - read["voxel"][1]), read["origin"]), 1e-3)
+        self.assertIn(len(read["halves"]), (0, 2))  # half maps where both halves have a pose
+        self.assertTrue((self.folder / "average.png").read_bytes().startswith(b"\x89PNG"))
+
+
+LINK = """
+import json, numpy
+from picasso import io, postprocess
+locs, info = io.load_locs({file!r})
+linked = postprocess.link(locs, info, r_max={reach}, max_dark_time={dark}, remove_ambiguous_lengths=False)
+pixel = 160
+scaled = {{"x": linked["x"] * pixel, "y": linked["y"] * pixel, "sigma_xy": numpy.sqrt((linked["lpx"]**2 + linked["lpy"]**2) / 2) * pixel,
+           "photons": linked["photons"], "bg": linked["bg"], "frame": linked["frame"], "merged": linked["n"]}}
+out = {{}}
+for name, values in scaled.items():
+    v = numpy.sort(numpy.asarray(values, float))
+    out[name] = [v[0], v[len(v) // 2], v[-1]]
+print(json.dumps({{"n": len(linked), "columns": out}}))
+"""
+ORIGAMI = pathlib.Path(__file__).resolve().parents[3] / "shared/data/formats/picasso_origami_simulated_locs.hdf5"
+
+
+@program("PICASSO_PYTHON", "Picasso")
+@unittest.skipUnless(ORIGAMI.exists(), "the shared data are not here")
+class PicassoLink(PolarCase):
+    """input.group does what Picasso's link does, on the same file."""
+    @classmethod
+    def setUpClass(cls):
+        imported = subprocess.run([os.environ["PICASSO_PYTHON"], "-c", "from picasso import postprocess"],
+                                  capture_output=True, text=True, timeout=240)
+        if imported.returncode != 0:
+            raise unittest.SkipTest("picasso.postprocess cannot be imported: " + imported.stderr.strip().splitlines()[-1])
+
+    def test_merges_the_same_localisations(self):
+        script = self.write("link.py", LINK.format(file=str(ORIGAMI), reach=10 / 160, dark=1))
+        done = subprocess.run([os.environ["PICASSO_PYTHON"], script], capture_output=True, text=True, timeout=240)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        theirs = json.loads(done.stdout.splitlines()[-1])
+        ours = json.loads(self.ok("inspect", ORIGAMI, "--json", "--set", "input.group.distance=10 nm",
+                                  "--set", "input.group.dark_frames=1", "--set", "input.pixel_size_nm=160"))
+        self.assertEqual(ours["localisations"], theirs["n"])
+        columns = {column["name"]: column for column in ours["columns"]}
+        for name, values in theirs["columns"].items():
+            for of, value in zip(("minimum", "median", "maximum"), values):
+                self.assertLess(abs(columns[name][of] / value - 1) if value else abs(columns[name][of]), 1e-5, (name, of))
 
 
 if __name__ == "__main__":

@@ -27,11 +27,18 @@ struct RunOutcome {
 /// The engine; tests put another one in its place.
 using Engine = std::function<Registration(const Views&, const RegistrationOptions&, Progress&, Checkpoint&)>;
 
+/// register_views.
+Engine default_engine();
+
+/// Whether output.directory holds the complete result of this very computation: the same content of the input
+/// and the same configuration. Throws smlm::Error where the input cannot be read.
+bool is_complete(const RunConfig& config);
+
 /// Checks and locks the output directory first, computes, then writes every file whole, summary.json last: a
 /// directory with summary.json is complete. Throws smlm::Error (see docs/faults.md).
 RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress, const Engine& engine);
 
-/// The same with register_views.
+/// The same with the default engine.
 RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progress);
 
 }  // namespace polar

@@ -17,6 +17,12 @@ struct OutputOptions {
   double voxel_nm = 0;  // of template.hdf and preview.png; 0: half the median uncertainty
   bool preview = true;  // preview.png
   bool report = true;   // report.html, the page to look at
+  /// own: the template in the frame that its symmetry or its principal axes suggest | raw: as the engine left
+  /// it.
+  std::string frame = "own";
+  /// Places for a label that are one site of the template, as far as it can be resolved: for the labelling
+  /// efficiency.
+  int labels_per_site = 1;
   /// none | halves: registers two halves of the particles independently as well, and two of pure noise, and
   /// reports their Fourier shell correlation (twice the time again).
   std::string resolution = "none";
@@ -34,6 +40,9 @@ struct RunConfig {
   std::vector<MatchedPattern> patterns;
   smlm::ReadOptions read;
   RegistrationOptions registration;
+  /// poses.csv with poses to start from (template_from_view), instead of registration.starts; empty: none are
+  /// known.
+  std::string initial_poses;
   OutputOptions output;
 };
 

@@ -22,6 +22,7 @@ HalfMaps compare_half_maps(const Results& first, const Results& second, std::uin
 /// takes them.
 struct DrawnShells {
   double voxel_nm = 0;
+  Volume first, second;
   FourierShells shells;
 };
 DrawnShells shells_between(const smlm::LocalisationTable& a, const RenderOptions& drawing_a,

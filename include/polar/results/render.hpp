@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "polar/registration/registration.hpp"
@@ -19,6 +20,7 @@ struct RenderOptions {
   /// sigma_eff^2 = factor^2 sigma^2 + extra^2 across and along the axis of a particle's uncertainties: draws
   /// the precision that the data showed (Registration::calibration), not the one that the table states.
   double lateral_factor = 1, axial_factor = 1, lateral_extra_nm = 0, axial_extra_nm = 0;
+  std::string channel_column;  // whose values name each localisation's channel; empty: there is one
 };
 
 /// Localisations per nm^3 (planar: per nm^2, one slice), slowest axis z, then y, then x.
@@ -45,5 +47,16 @@ Volume render(const smlm::LocalisationTable& table, const RenderOptions& options
 /// Renders into a grid that is given (size, origin, voxel, planar; its density is replaced): two tables in
 /// one box.
 Volume render_into(Volume grid, const smlm::LocalisationTable& table, const RenderOptions& options = {});
+
+/// What every channel alone looks like.
+struct ChannelVolume {
+  std::string name;
+  Volume volume;
+};
+
+/// The density of each channel in the box of all of them; none where options.channel_column is empty. They
+/// sum to render()'s, but for localisations without a channel.
+std::vector<ChannelVolume> render_channels(const smlm::LocalisationTable& table,
+                                           const RenderOptions& options = {});
 
 }  // namespace polar

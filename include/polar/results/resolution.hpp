@@ -14,6 +14,7 @@ struct HalfMaps {
   std::size_t first_particles = 0, second_particles = 0;  // accepted in each half
   Pose first_from_second_nm;
   double voxel_nm = 0;
+  Volume first_density, second_density;  // in one box, the second one aligned
   FourierShells shells;
   ShellResolution resolution;
 };

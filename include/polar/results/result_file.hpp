@@ -12,7 +12,8 @@ namespace polar {
 struct ResultRecord {
   smlm::LocalisationTable superparticle;
   TemplateSites sites;
-  RenderOptions render;  // its calibration
+  std::vector<PoseRow> poses;  // without their standard deviations
+  RenderOptions render;        // its calibration
   std::string program, configuration, input_hash;
   std::vector<std::string> warnings;  // of the run: what it assumed
 };

@@ -33,6 +33,7 @@ struct Results {
   smlm::ParticleSet particles;
   Normalisation normalisation;
   bool planar = false;
+  std::string channel_column;  // of the table, where it holds several channels; else empty
   Registration registration;
   Provenance provenance;
   std::optional<ResolutionReport> resolution;  // where output.resolution asks for it
@@ -68,8 +69,13 @@ struct TemplateSites {
 };
 TemplateSites template_sites(const Results& results);
 
-/// The superparticle: every localisation of every accepted particle in the template frame, with its
-/// covariance rotated along; all other columns, source files and rows as in the input.
+/// Every localisation of the particles that have a pose (one a particle, to the template from the table's own
+/// nanometres) in the template frame, with its covariance rotated along; all other columns, source files and
+/// rows as in the input.
+smlm::LocalisationTable aligned(const smlm::ParticleSet& particles,
+                                const std::vector<std::optional<Pose>>& template_from_table);
+
+/// The superparticle: the accepted particles, aligned.
 smlm::LocalisationTable superparticle(const Results& results);
 
 }  // namespace polar

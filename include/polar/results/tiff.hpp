@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "polar/results/render.hpp"
 
@@ -11,6 +12,7 @@ namespace polar {
 /// calibrated in nm: resolution tags and an ImageJ description (unit, spacing, origin in pixels, display
 /// range), so that ImageJ measures in the template frame. Values are those of Volume::density. Throws
 /// smlm::Error (io).
-void write_imagej_tiff(const std::string& path, const Volume& volume);
+/// Several volumes, in the same box, become the channels of a composite hyperstack.
+void write_imagej_tiff(const std::string& path, const std::vector<Volume>& channels);
 
 }  // namespace polar

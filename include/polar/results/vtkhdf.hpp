@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "polar/results/render.hpp"
 #include "smlm/localisation_table.hpp"
@@ -13,6 +14,8 @@ void write_points_vtkhdf(const std::string& path, const smlm::LocalisationTable&
 
 /// template.hdf: ImageData, PointData/density float32 in z, y, x order; spacing in nm, and the attribute
 /// element_size_um (z, y, x) that Fiji's HDF5 reader asks for.
-void write_volume_vtkhdf(const std::string& path, const Volume& volume);
+/// Channels, in the same box, are further arrays `density_<name>`.
+void write_volume_vtkhdf(const std::string& path, const Volume& volume,
+                         const std::vector<ChannelVolume>& channels = {});
 
 }  // namespace polar

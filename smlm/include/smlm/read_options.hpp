@@ -5,7 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "smlm/blink_group.hpp"
+#include "smlm/channel.hpp"
+#include "smlm/particle_limits.hpp"
 #include "smlm/pick.hpp"
+#include "smlm/row_filter.hpp"
 
 namespace smlm {
 
@@ -44,6 +48,15 @@ struct ReadOptions {
   std::vector<std::string> unassigned_particle;
   /// Leave out rows whose position or uncertainty cannot be used, and count them; else they are an error.
   bool drop_nonfinite = false;
+  /// Rows are left out whose value lies outside of [low, high] (see filter_rows), before anything else is
+  /// made of them.
+  std::map<std::string, Bounds> filters;
+  /// How localisations of one molecule in consecutive frames are merged, after the filters.
+  BlinkOptions group;
+  /// Which rows are of which channel, and which channels decide the poses.
+  ChannelOptions channel;
+  /// What a particle must be to be registered.
+  ParticleLimits particle_limits;
   /// Lateral standard deviation given to tables without any uncertainty, nm; the axial one is twice that.
   double assumed_sigma_nm = 10;
   /// Factor on MINFLUX z for the refractive index mismatch; 1 keeps z as measured.

@@ -1,5 +1,6 @@
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "fields.hpp"
@@ -134,6 +135,32 @@ void FieldReader::field(const char* name, std::vector<double>& list) {
   list.clear();
   if (node->kind != Node::Kind::list) list.push_back(number<double>(*node, name, kExpected));
   for (const Node& item : node->items) list.push_back(number<double>(item, name, kExpected));
+}
+
+double FieldReader::bound(const Node& node, const std::string& name) const {
+  const double infinity = std::numeric_limits<double>::infinity();
+  if (node.kind == Node::Kind::scalar && !node.quoted && node.scalar == ".inf") return infinity;
+  if (node.kind == Node::Kind::scalar && !node.quoted && node.scalar == "-.inf") return -infinity;
+  return number<double>(node, name, "[low, high], numbers or -.inf and .inf");
+}
+
+void FieldReader::bounds(const char* name, std::array<double, 2>& low_high) {
+  const Node* node = take(name);
+  if (!node) return;
+  if (node->kind != Node::Kind::list || node->items.size() != 2) wrong(*node, name, "[low, high]");
+  low_high = {bound(node->items[0], name), bound(node->items[1], name)};
+}
+
+void FieldReader::bounds(const char* name, std::map<std::string, std::array<double, 2>>& map) {
+  FieldReader inner = enter(name);
+  for (const auto& [key, value] : inner.map_.entries) inner.bounds(key.c_str(), map[key]);
+}
+
+void FieldReader::tree(const char* name, Node& map) {
+  const Node* node = take(name);
+  if (!node) return;
+  if (node->kind != Node::Kind::map && node->kind != Node::Kind::null) wrong(*node, name, "a section");
+  map = *node;
 }
 
 void FieldReader::finish() const {

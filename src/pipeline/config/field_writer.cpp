@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cmath>
 
 #include "fields.hpp"
 
@@ -6,6 +7,7 @@ namespace polar::pipeline {
 
 namespace {
 std::string number(double value) {
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
   char digits[32];
   const auto end = std::to_chars(digits, digits + sizeof digits, value);
   return {digits, end.ptr};
@@ -68,6 +70,14 @@ void FieldWriter::field(const char* name, const std::vector<std::string>& list) 
 }
 void FieldWriter::field(const char* name, const std::vector<double>& list) {
   line(std::string(name) + ": " + joined(list, number));
+}
+
+void FieldWriter::bounds(const char* name, const std::array<double, 2>& low_high) { field(name, low_high); }
+void FieldWriter::bounds(const char* name, const std::map<std::string, std::array<double, 2>>& map) {
+  if (map.empty()) return line(std::string(name) + ": {}");
+  section(name, [&](FieldWriter& inner) {
+    for (const auto& [key, low_high] : map) inner.bounds(scalar_text(key).c_str(), low_high);
+  });
 }
 
 }  // namespace polar::pipeline

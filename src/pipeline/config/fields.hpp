@@ -29,6 +29,8 @@ class FieldReader {
   void field(const char* name, std::array<double, 2>& range);    // [low, high], or one number for both
   void field(const char* name, std::vector<std::string>& list);  // a list, or one value
   void field(const char* name, std::vector<double>& list);
+  void bounds(const char* name, std::array<double, 2>& low_high);  // [low, high], also -.inf and .inf
+  void bounds(const char* name, std::map<std::string, std::array<double, 2>>& map);  // of the user's keys
 
   /// A nested map; `body` is called with a reader of it (of an empty one where the key is absent).
   template <class Body>
@@ -47,11 +49,29 @@ class FieldReader {
       inner.finish();
     }
   }
+  /// A list of maps, or one map; `body(reader, value)` for each.
+  template <class Value, class Body>
+  void items(const char* name, std::vector<Value>& list, Body body) {
+    const Node* node = take(name);
+    if (!node) return;
+    if (node->kind != Node::Kind::list && node->kind != Node::Kind::map) wrong(*node, name, "a list");
+    const bool one = node->kind == Node::Kind::map;
+    for (std::size_t i = 0; i < (one ? 1 : node->items.size()); ++i) {
+      FieldReader inner(one ? *node : node->items[i], where_,
+                        prefix_ + name + "[" + std::to_string(i + 1) + "].");
+      list.emplace_back();
+      body(inner, list.back());
+      inner.finish();
+    }
+  }
+  /// A map that somebody else reads.
+  void tree(const char* name, Node& map);
   void finish() const;
 
  private:
   FieldReader enter(const char* name);
   const Node* take(const char* name);
+  double bound(const Node& node, const std::string& name) const;
   [[noreturn]] void wrong(const Node& node, const std::string& name, const std::string& expected) const;
   template <class T>
   T number(const Node& node, const std::string& name, const char* expected) const;
@@ -73,6 +93,8 @@ class FieldWriter {
   void field(const char* name, const std::array<double, 2>& range);
   void field(const char* name, const std::vector<std::string>& list);
   void field(const char* name, const std::vector<double>& list);
+  void bounds(const char* name, const std::array<double, 2>& low_high);
+  void bounds(const char* name, const std::map<std::string, std::array<double, 2>>& map);
 
   template <class Body>
   void section(const char* name, Body body) {

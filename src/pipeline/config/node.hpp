@@ -32,6 +32,9 @@ Node parse_yaml(const std::string& text, const std::string& where);
 /// Reads a regular file of at most kMostBytes.
 Node load_yaml(const std::string& path);
 
+/// Puts every value of `over` into `base`: maps are merged key by key, all else replaces what is there.
+void merge(Node& base, const Node& over);
+
 /// Puts `a.b.c=value` into the tree; the value is YAML ("[1, 2]", "true", plain text).
 void apply_override(Node& root, const std::string& assignment);
 

@@ -154,6 +154,19 @@ Node load_yaml(const std::string& path) {
   return parse_yaml(text.str(), path);
 }
 
+void merge(Node& base, const Node& over) {
+  if (base.kind != Node::Kind::map || over.kind != Node::Kind::map) {
+    if (over.kind != Node::Kind::null || base.kind != Node::Kind::map) base = over;
+    return;
+  }
+  for (const auto& [key, value] : over.entries) {
+    if (Node* known = base.find(key))
+      merge(*known, value);
+    else
+      base.entries.emplace_back(key, value);
+  }
+}
+
 void apply_override(Node& root, const std::string& assignment) {
   const std::string where = "--set " + assignment;
   const std::size_t equals = assignment.find('=');

@@ -16,6 +16,7 @@
 #include "polar/results/pose_table.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
+#include "support/stand_in_engine.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace polar {
@@ -23,21 +24,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Stands in for the engine: every view accepted where its centre of mass already is.
-Registration stay(const Views& views, const RegistrationOptions&, Progress&, Checkpoint&) {
-  Registration r;
-  r.view.resize(views.view.size());
-  for (std::size_t i = 0; i < views.view.size(); ++i) {
-    r.view[i].accepted = true;
-    r.view[i].reason.clear();
-    r.view[i].n_used = static_cast<int>(views.view[i].points.cols());
-    r.view[i].template_from_view.translation = Eigen::Vector3d::Zero();
-  }
-  r.fused.centre = Eigen::Matrix3Xd::Zero(3, 1);
-  r.fused.weight = Eigen::VectorXd::Ones(1);
-  r.stopped_because = "it is a stand-in";
-  return r;
-}
+using support::stay;
 
 class Cancelling : public Progress {
  public:
@@ -171,6 +158,38 @@ TEST_F(Run, OverwriteLeavesNothingOfTheEarlierRun) {
   EXPECT_FALSE(std::filesystem::exists(out("results.h5")));
   EXPECT_TRUE(std::filesystem::exists(out("aligned.csv")));
   EXPECT_TRUE(std::filesystem::exists(out("mine.txt")));
+}
+
+TEST_F(Run, UnfitParticlesKeepTheirLines) {
+  write_config(
+      "input:\n  files: data/localisations.csv\n  filters: {x_nm: [-.inf, 1.e+6]}\n"
+      "  particle_limits: {localisations: [1, .inf]}\n");
+  ASSERT_EQ(fault({}), 0) << message_;
+  std::uint64_t most = 0, second = 0;
+  for (const PoseRow& row : read_pose_table(out("poses.csv"))) {
+    second = std::max(second, std::min(most, row.n_localisations));
+    most = std::max(most, row.n_localisations);
+  }
+  ASSERT_LT(second, most);
+  write_config("input:\n  files: data/localisations.csv\n  particle_limits: {localisations: [0, " +
+               std::to_string(second) + "]}\n");
+  ASSERT_EQ(fault({true, false}), 0) << message_;
+  const std::vector<PoseRow> poses = read_pose_table(out("poses.csv"));
+  ASSERT_EQ(poses.size(), 4u);
+  int left_out = 0;
+  for (const PoseRow& row : poses) {
+    left_out += row.accepted ? 0 : 1;
+    if (!row.accepted) {
+      EXPECT_EQ(row.n_localisations, most);
+      EXPECT_THAT(row.reason, HasSubstr("left out: more than"));
+    }
+  }
+  EXPECT_EQ(left_out, 1);
+  const smlm::h5::File record = smlm::h5::File::open(out("results.h5"));
+  EXPECT_THAT(record.read_strings("/run/configuration").front(), HasSubstr("localisations: [0, "));
+  write_config("input: {files: data/localisations.csv, particle_limits: {localisations: [0, 1]}}\n");
+  EXPECT_EQ(fault({true, false}), 3);
+  EXPECT_THAT(message_, HasSubstr("widen the limits"));
 }
 
 TEST_F(Run, CancelledRunsWriteNothing) {

@@ -173,7 +173,7 @@ TEST(ImageJTiff, HoldsTheVolumeAndItsCalibration) {
   const support::TemporaryDirectory directory;
   Volume v{{3, 2, 4}, {-5, 1, 2}, 2.5, false, {}};
   for (int i = 0; i < 24; ++i) v.density.push_back(0.125f * float(i));
-  write_imagej_tiff(directory.path("a.tif"), v);
+  write_imagej_tiff(directory.path("a.tif"), {v});
   const std::unique_ptr<TIFF, decltype(&TIFFClose)> file(TIFFOpen(directory.path("a.tif").c_str(), "r"),
                                                          &TIFFClose);
   ASSERT_TRUE(file);
@@ -196,7 +196,7 @@ TEST(ImageJTiff, HoldsTheVolumeAndItsCalibration) {
 
 TEST(ImageJTiff, PlanarVolumeIsOneSlice) {
   const support::TemporaryDirectory directory;
-  write_imagej_tiff(directory.path("a.tif"), {{2, 1, 1}, {0, 0, 0}, 1, true, {0.0f, 3.0f}});
+  write_imagej_tiff(directory.path("a.tif"), {Volume{{2, 1, 1}, {0, 0, 0}, 1, true, {0.0f, 3.0f}}});
   const std::unique_ptr<TIFF, decltype(&TIFFClose)> file(TIFFOpen(directory.path("a.tif").c_str(), "r"),
                                                          &TIFFClose);
   ASSERT_TRUE(file);

@@ -19,6 +19,13 @@
 namespace polar {
 namespace {
 
+RenderOptions voxels_of(double nm, std::size_t most_per_axis) {
+  RenderOptions options;
+  options.voxel_nm = nm;
+  options.most_voxels_per_axis = most_per_axis;
+  return options;
+}
+
 class ResultsOfPores : public ::testing::Test {
  protected:
   ResultsOfPores() {
@@ -35,6 +42,17 @@ class ResultsOfPores : public ::testing::Test {
   Results results_;
   support::TemporaryDirectory directory_;
 };
+
+// The engine's rotations are products of many; what is written must be one to the last bits, because the inverse
+// of a pose is taken by transposing, twenty micrometres away from the origin of a field of view.
+TEST_F(ResultsOfPores, PosesAreRotationsHoweverTheyWereComposed) {
+  results_.registration.view[2].template_from_view.rotation *= 1 + 2e-7;
+  results_.normalisation.centre_nm[2] = {19000, 12000, 0};
+  const Pose pose = template_from_table(results_, 2);
+  const Eigen::Vector3d origin = pose.inverse() * Eigen::Vector3d::Zero();
+  EXPECT_LT((pose * origin).norm(), 1e-9);
+  EXPECT_LT((pose.rotation.transpose() * pose.rotation - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+}
 
 TEST_F(ResultsOfPores, PosesActOnTheTableInNanometres) {
   for (std::size_t i = 0; i < 6; ++i) {
@@ -111,7 +129,7 @@ TEST_F(ResultsOfPores, NothingAcceptedStillWrites) {
   write_result_file(directory_.path("results.h5"), results_, t);
   write_points_vtkhdf(directory_.path("aligned.hdf"), t);
   write_volume_vtkhdf(directory_.path("template.hdf"), render(t));
-  write_preview_png(directory_.path("preview.png"), render(t));
+  write_preview_png(directory_.path("preview.png"), {{"", render(t)}});
   EXPECT_EQ(read_result_file(directory_.path("results.h5")).superparticle.size(), 0u);
 }
 
@@ -153,7 +171,7 @@ TEST(Render, GaussianHasItsMassPlaceAndSpread) {
     t.position_nm.push_back({10 + side, -20 + side, 5 + side});
     t.covariance_nm2.push_back({1, 0, 0, 1, 0, 1});
   }
-  const Volume v = render(t, {1.0, 256});
+  const Volume v = render(t, voxels_of(1.0, 256));
   double mass = 0, xx = 0, xy = 0, yz = 0;
   for (std::size_t z = 0; z < v.size[2]; ++z)
     for (std::size_t y = 0; y < v.size[1]; ++y)
@@ -178,7 +196,7 @@ TEST(Render, PlanarIsOneSlicePerArea) {
   smlm::LocalisationTable t = single({25, 0, 0, 25, 0, 1}, true);
   t.position_nm.insert(t.position_nm.end(), {{-70, -100, 0}, {90, 60, 0}});
   t.covariance_nm2.insert(t.covariance_nm2.end(), {{1, 0, 0, 1, 0, 1}, {1, 0, 0, 1, 0, 1}});
-  const Volume v = render(t, {0.5, 1024});
+  const Volume v = render(t, voxels_of(0.5, 1024));
   EXPECT_EQ(v.size[2], 1u);
   double mass = 0;
   float peak = 0;
@@ -215,7 +233,7 @@ TEST(Render, StretchedCovariancesKeepTheirMass) {
     t.position_nm.push_back({10 + side, -20 + side, 5 + side / 10});
     t.covariance_nm2.push_back({1, 0, 0, 1, 0, 1});
   }
-  const Volume v = render(t, {1.0, 1024});
+  const Volume v = render(t, voxels_of(1.0, 1024));
   double mass = 0;
   for (const float d : v.density) mass += double(d);
   // Whole for the long one; the box ends two standard deviations outside the two others, on three axes each.
@@ -232,7 +250,7 @@ TEST(Render, FlatCovariancesKeepTheirMassAndAreFinite) {
     t.position_nm.push_back({10 + side, -20 + side, 5 + side});
     t.covariance_nm2.push_back({400, 0, 0, 400, 0, 400});
   }
-  const Volume v = render(t, {40.0, 1024});
+  const Volume v = render(t, voxels_of(40.0, 1024));
   double mass = 0;
   for (const float d : v.density) {
     ASSERT_TRUE(std::isfinite(d) && d >= 0);

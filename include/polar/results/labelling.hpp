@@ -1,0 +1,26 @@
+// How many of the places that could carry a label do.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace polar {
+
+struct Labelling {
+  double efficiency = 0, low = 0,
+         high = 0;            // probability that a place carries a label, and its 95 % interval
+  int sites = 0;              // of the template
+  int labels_per_site = 1;    // places that are one site
+  std::size_t particles = 0;  // that were counted
+  int fewest = 1;             // sites that a particle needs to be among them
+  double dispersion = 1;      // variance over that of independent labels; above 1 widens the interval
+};
+
+/// From the numbers of occupied sites of particles: a binomial distribution of which the smallest counts may
+/// be missing, because particles that show too little are not seen or not accepted. Counts below the smallest
+/// one that is as frequent as the larger ones make one expect are left out (`fewest`), unless chance explains
+/// that they are so few; particles without any site always. A site of several labels is occupied where any
+/// is. Interval by the likelihood ratio. `occupied` holds at least one particle with a site.
+Labelling labelling_efficiency(const std::vector<int>& occupied, int sites, int labels_per_site);
+
+}  // namespace polar
