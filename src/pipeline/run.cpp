@@ -193,9 +193,9 @@ std::vector<std::string> describe(const Results& r, const std::vector<Stranger>&
                                   const std::string& directory, double seconds) {
   const Registration& g = r.registration;
   const std::size_t n = r.particles.particles.size();
-  std::vector<std::string> lines = {"structure    " + to_string(g.verdict) + ": " + g.verdict_reason,
-                                    "particles    " + std::to_string(accepted_particles(r)) + " of " +
-                                    std::to_string(n) + " accepted"};
+  std::vector<std::string> lines = {
+      "structure    " + to_string(g.verdict) + ": " + g.verdict_reason,
+      "particles    " + std::to_string(accepted_particles(r)) + " of " + std::to_string(n) + " accepted"};
   for (const auto& [count, reason] : rejections(r))
     lines.push_back("rejected     " + std::to_string(count) + ": " + reason);
   const Precision precision = median_precision(r);
@@ -209,7 +209,8 @@ std::vector<std::string> describe(const Results& r, const std::vector<Stranger>&
                   (g.converged ? ", converged: " : ", not converged: ") + g.stopped_because);
   if (g.symmetry) lines.push_back(pipeline::symmetry_line(*g.symmetry, r.normalisation.scale_nm));
   if (g.other)
-    lines.push_back("other        the average " + (g.other->group == "C1" ? "without symmetry" : "with " + g.other->group) +
+    lines.push_back("other        the average " +
+                    (g.other->group == "C1" ? "without symmetry" : "with " + g.other->group) +
                     format(" explains localisations kept apart by %+.4f", g.other->gain) +
                     format(" +- %.4f nat", g.other->gain_std));
   if (r.resolution) lines.push_back(resolution_line(*r.resolution));
@@ -261,8 +262,9 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
   for (const Stranger& s : unlike)
     summary["unlike_the_others"].push_back({{"particle", s.particle}, {"deviation", s.deviation}});
   if (g.other)
-    summary["other_average"] = {
-        {"group", g.other->group}, {"held_out_gain", g.other->gain}, {"held_out_gain_std", g.other->gain_std}};
+    summary["other_average"] = {{"group", g.other->group},
+                                {"held_out_gain", g.other->gain},
+                                {"held_out_gain_std", g.other->gain_std}};
   if (g.symmetry) summary["symmetry"] = pipeline::symmetry_json(*g.symmetry, r.normalisation.scale_nm);
   if (!g.weights_sha256.empty()) summary["weights_sha256"] = g.weights_sha256;
   if (r.resolution)
