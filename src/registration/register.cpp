@@ -167,9 +167,9 @@ class Run {
       timed("noise");
       if (progress_.cancelled()) return cancelled();
     }
-    if (fine.fit.noise.lateral_factor != 1 ||
-        fine.fit.noise.axial_factor != 1)  // what is one burst is told by it
-      problems_.emplace(make_problems(views_, options_.engine.evidence, options_.seed, fine.fit.noise));
+    if (!known) fine.splitting = fine.fit.noise;
+    if (fine.splitting.lateral_factor != 1 || fine.splitting.axial_factor != 1)
+      problems_.emplace(make_problems(views_, options_.engine.evidence, options_.seed, fine.splitting));
     const Problem& problem = problems_->of(coarse.crowded);
     const Refiner refiner(problem, grid, options_.engine);
     if (!known) {
@@ -234,10 +234,14 @@ class Run {
     Refiner::AgainstCloud sum, mean;
     std::vector<double> count(fit.pose.size(), 0.0);
     sum.structure.assign(count.size(), 0.0), sum.cloud.assign(count.size(), 0.0);
+    // A template of hot spots asks for less noise than there is, and would then judge by blinks it has fitted.
+    NoiseModel splitting = fit.noise;
+    splitting.lateral_factor = std::max(1.0, splitting.lateral_factor);
+    splitting.axial_factor = std::max(1.0, splitting.axial_factor);
     for (int draw = 0; draw < o.draws; ++draw) {
       const Problems other =
           make_problems(views_, options_.engine.evidence,
-                        options_.seed + kDrawSeed * static_cast<std::uint64_t>(draw + 1), fit.noise);
+                        options_.seed + kDrawSeed * static_cast<std::uint64_t>(draw + 1), splitting);
       const Refiner::AgainstCloud one =
           Refiner(other.of(crowded), grid, options_.engine).judge_against_cloud(fit);
       for (std::size_t i = 0; i < count.size(); ++i) {

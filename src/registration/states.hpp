@@ -28,6 +28,7 @@ struct CoarseState {
 /// And when the exact template is.
 struct FineState {
   Fit fit;
+  NoiseModel splitting;  // by which bursts were told apart
 };
 
 namespace states {
@@ -77,8 +78,8 @@ void fields(Archive& archive, Fit& value) {
 }
 template <class Archive>
 void fields(Archive& archive, FineState& value) {
-  auto& [fit] = value;
-  archive(fit);
+  auto& [fit, splitting] = value;
+  archive(fit, splitting);
 }
 
 }  // namespace states

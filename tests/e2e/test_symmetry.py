@@ -9,7 +9,8 @@ PORES = "simulation: {particles: 60, blinks_mean: 8}"
 
 class Symmetry(PolarCase):
     def result(self, symmetry, output):
-        self.ok("run", "run.yaml", "--set", f"registration.symmetry={symmetry}", "--output", output)
+        self.ok("run", "run.yaml", "--set", f"registration.symmetry={symmetry}",
+                "--set", "output.frame=raw", "--output", output)
         return json.loads((self.folder / output / "summary.json").read_text())
 
     def test_pores_are_found_to_be_d8_and_gain_by_it(self):

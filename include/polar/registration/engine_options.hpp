@@ -106,6 +106,7 @@ struct RefineOptions {
   int basins = 8;                    // refined for every view (the paper's M); measured
   int search_localisations = 128;    // of a view looked at in a search; measured
   double shift = 0.10, step = 0.06;  // of a search's translations; measured
+  double planar_shift = 0.3;         // the same in the plane, where missing labels move the centre; measured
   int promising = 200;               // rotations whose shift is improved; measured
   int most_searches = 4;             // chosen
   double settled = 0.01;             // share of views that may still move when searching ends; chosen

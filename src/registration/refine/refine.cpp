@@ -89,7 +89,8 @@ void Refiner::search(const Subsets& subsets, Fit& fit) const {
   o.basins = options_.basins;
   o.group = fit.group;
   o.most_localisations = options_.search_localisations;
-  o.grid.translation = axis_shifts(static_cast<float>(options_.shift), problem_.planar());
+  o.grid.translation = axis_shifts(
+      static_cast<float>(problem_.planar() ? options_.planar_shift : options_.shift), problem_.planar());
   o.grid.promising = options_.promising;
   o.grid.step = static_cast<float>(options_.step);
   const Eigen::Matrix3f turn = grid_turn(

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "polar/registration/register.hpp"
 #include "scene.hpp"
 
@@ -38,6 +40,30 @@ TEST(Verdict, pureNoiseIsNoStructure) {
     EXPECT_EQ(r.verdict, Verdict::none) << seed << ": " << r.verdict_reason;
     EXPECT_EQ(accepted(r), 0) << seed;
   }
+}
+
+// The brightest label of every particle can be laid onto one place: no structure.
+TEST(Verdict, labelsAnywhereThatBlinkAreNoStructure) {
+  Views views;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    KeyedRandom random(1, i, 8);
+    std::vector<Eigen::Vector3f> points;
+    for (int label = 0; label < 16; ++label) {
+      const Eigen::Vector3d at = 0.5 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+      const auto blinks = static_cast<int>(-5 * std::log(1 - random.uniform())) + 1;  // geometric, nearly
+      for (int b = 0; b < blinks; ++b)
+        points.push_back(
+            (at + 0.1 * Eigen::Vector3d(random.normal(), random.normal(), 2 * random.normal())).cast<float>());
+    }
+    View view;
+    view.points.resize(3, static_cast<Eigen::Index>(points.size()));
+    for (std::size_t j = 0; j < points.size(); ++j) view.points.col(static_cast<Eigen::Index>(j)) = points[j];
+    view.covariance.assign(points.size(), {0.01f, 0, 0, 0.01f, 0, 0.04f});
+    views.view.push_back(view);
+  }
+  const Registration r = registered(views, 1);
+  EXPECT_EQ(r.verdict, Verdict::none) << r.verdict_reason;
+  EXPECT_EQ(accepted(r), 0);
 }
 
 TEST(Verdict, sitesAreAStructureAndSayByHowMuch) {
