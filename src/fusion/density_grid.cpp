@@ -44,6 +44,9 @@ void convolve(const std::vector<float>& in, const std::vector<float>& tap, std::
     }
 }
 
+// -1 of what lies outside any frame: the library's rounding is a call for each of many millions.
+int nearest(float x) { return x > -1.0f && x < 65536.0f ? static_cast<int>(x + 1.5f) - 1 : -1; }
+
 }  // namespace
 
 VoxelFrame::VoxelFrame(double reach, double voxel_size, bool planar) {
@@ -67,8 +70,7 @@ void VoxelCounts::add(const LookupPoints& p, const Eigen::Matrix3f& rotation,
   const Eigen::Vector3f t = (translation - frame_.origin) * inverse;
   for (std::size_t j = 0; j < static_cast<std::size_t>(p.count); ++j) {
     const Eigen::Vector3f at = r * Eigen::Vector3f(p.x[j], p.y[j], p.z[j]) + t;
-    const auto i = static_cast<int>(std::lround(at.x())), k = static_cast<int>(std::lround(at.y())),
-               l = frame_.planar() ? 0 : static_cast<int>(std::lround(at.z()));
+    const int i = nearest(at.x()), k = nearest(at.y()), l = frame_.planar() ? 0 : nearest(at.z());
     if (i < 0 || k < 0 || l < 0 || i >= frame_.dim[0] || k >= frame_.dim[1] || l >= frame_.dim[2]) continue;
     count_[static_cast<std::size_t>((l * frame_.dim[1] + k) * frame_.dim[0] + i)] += weight;
   }

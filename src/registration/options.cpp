@@ -37,7 +37,8 @@ std::vector<std::string> violations(const RegistrationOptions& options) {
   if (!(options.tilt_deg >= 0 && options.tilt_deg <= 90))
     faults.push_back("registration.tilt_deg is " + std::to_string(options.tilt_deg) + ", not from 0 to 90");
   if (options.flip && options.tilt_deg == 0)
-    faults.push_back("registration.flip: without tilt_deg any orientation is searched anyway; give tilt_deg too");
+    faults.push_back(
+        "registration.flip: without tilt_deg any orientation is searched anyway; give tilt_deg too");
   LatentOptions latent = options.latent;
   latent.optimizer = options.optimizer;
   for (const std::string& v : violations(latent)) faults.push_back("registration." + v);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <ctime>
 
+#include "account/report.hpp"
+#include "account/verdict.hpp"
 #include "data/template_tools.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
@@ -14,8 +16,6 @@
 #include "proposals/compete.hpp"
 #include "proposals/latent_method.hpp"
 #include "proposals/polar_start.hpp"
-#include "account/report.hpp"
-#include "account/verdict.hpp"
 #include "smlm/error.hpp"
 #include "states.hpp"
 #include "symmetry/relaxation.hpp"
@@ -66,7 +66,8 @@ void check_planar(const Views& views, const RegistrationOptions& options) {
   if (!views.planar) return;
   if (names_a_group(options.symmetry) && options.symmetry[0] != 'C')
     throw smlm::Error(smlm::Fault::usage, "registration.symmetry",
-                      "'" + options.symmetry + "' is not a group of planar data", "use auto, none, detect or C<n>");
+                      "'" + options.symmetry + "' is not a group of planar data",
+                      "use auto, none, detect or C<n>");
 }
 
 std::vector<Pose> poses_of(const std::vector<SoftPose>& soft) {
@@ -85,8 +86,11 @@ std::vector<int> some_at_random(const Problem& problem, double share, int key) {
 class Run {
  public:
   Run(const Views& views, const RegistrationOptions& options, Progress& progress, Checkpoint& checkpoint)
-      : options_(options), views_(views), problems_(make_problems(views, options.engine.evidence, options.seed)),
-        progress_(progress), checkpoint_(checkpoint) {
+      : options_(options),
+        views_(views),
+        problems_(make_problems(views, options.engine.evidence, options.seed)),
+        progress_(progress),
+        checkpoint_(checkpoint) {
     out_.view.resize(views.view.size());
     timed("views");
   }
@@ -140,8 +144,7 @@ class Run {
       timed("symmetry");
     }
     const AnnealOptions& a = options_.engine.anneal;
-    const SoftAnnealer all(problem, problem.all, a,
-                           {options_.tilt_deg * kRadiansPerDegree, options_.flip});
+    const SoftAnnealer all(problem, problem.all, a, {options_.tilt_deg * kRadiansPerDegree, options_.flip});
     all.continue_under({a.last_sweeps, a.last_width, a.last_width, a.last_beta, a.last_beta, 1, false}, 4000,
                        state);
     coarse.pose = poses_of(state.best);
@@ -164,7 +167,8 @@ class Run {
       timed("noise");
       if (progress_.cancelled()) return cancelled();
     }
-    if (fine.fit.noise.lateral_factor != 1 || fine.fit.noise.axial_factor != 1)  // what is one burst is told by it
+    if (fine.fit.noise.lateral_factor != 1 ||
+        fine.fit.noise.axial_factor != 1)  // what is one burst is told by it
       problems_.emplace(make_problems(views_, options_.engine.evidence, options_.seed, fine.fit.noise));
     const Problem& problem = problems_->of(coarse.crowded);
     const Refiner refiner(problem, grid, options_.engine);
@@ -198,19 +202,23 @@ class Run {
     return std::move(out_);
   }
 
-  // The template grown again from the poses of some views, as long as evidence gains by it: a hot spot between
-  // two labels is no place to climb from.
+  // The template grown again from the poses of some views, as long as evidence gains by it: a hot spot
+  // between two labels is no place to climb from.
   Fit regrown(const Problem& problem, const Refiner& refiner, Fit fit) {
     const ProposalOptions& p = options_.engine.proposals;
     const AnnealOptions& a = options_.engine.anneal;
-    const SoftAnnealer annealer(problem, problem.all, a, {options_.tilt_deg * kRadiansPerDegree, options_.flip});
-    for (int k = 1, rejected = 0; k <= p.most_proposals && rejected < p.fine_rejected && !progress_.cancelled(); ++k) {
+    const SoftAnnealer annealer(problem, problem.all, a,
+                                {options_.tilt_deg * kRadiansPerDegree, options_.flip});
+    for (int k = 1, rejected = 0;
+         k <= p.most_proposals && rejected < p.fine_rejected && !progress_.cancelled(); ++k) {
       std::vector<SoftPose> pose;
       for (const Pose& t : fit.pose) pose.push_back({t.rotation.cast<float>(), t.translation.cast<float>()});
-      SoftState state = annealer.from_poses(pose, some_at_random(problem, p.regrown_share, k), p.regrown_width);
+      SoftState state =
+          annealer.from_poses(pose, some_at_random(problem, p.regrown_share, k), p.regrown_width);
       state.group = fit.group;
-      annealer.anneal({p.regrown_sweeps, p.regrown_width, a.last_width, p.regrown_beta, a.last_beta, a.narrowing, false},
-                      5000 + static_cast<std::uint64_t>(k), state);
+      annealer.anneal(
+          {p.regrown_sweeps, p.regrown_width, a.last_width, p.regrown_beta, a.last_beta, a.narrowing, false},
+          5000 + static_cast<std::uint64_t>(k), state);
       Fit next = refiner.rounds(refiner.begin(poses_of(state.best), fit.noise, fit.group), progress_);
       const Comparison c = compare(fit.evidence, next.evidence);
       const bool better = c.better_by(options_.engine.evidence.standard_errors);
@@ -227,9 +235,11 @@ class Run {
     std::vector<double> count(fit.pose.size(), 0.0);
     sum.structure.assign(count.size(), 0.0), sum.cloud.assign(count.size(), 0.0);
     for (int draw = 0; draw < o.draws; ++draw) {
-      const Problems other = make_problems(views_, options_.engine.evidence,
-                                           options_.seed + kDrawSeed * static_cast<std::uint64_t>(draw + 1), fit.noise);
-      const Refiner::AgainstCloud one = Refiner(other.of(crowded), grid, options_.engine).judge_against_cloud(fit);
+      const Problems other =
+          make_problems(views_, options_.engine.evidence,
+                        options_.seed + kDrawSeed * static_cast<std::uint64_t>(draw + 1), fit.noise);
+      const Refiner::AgainstCloud one =
+          Refiner(other.of(crowded), grid, options_.engine).judge_against_cloud(fit);
       for (std::size_t i = 0; i < count.size(); ++i) {
         if (!std::isfinite(one.structure[i]) || !std::isfinite(one.cloud[i])) continue;
         sum.structure[i] += one.structure[i], sum.cloud[i] += one.cloud[i], ++count[i];
@@ -237,7 +247,8 @@ class Run {
       mean = sum;
       for (std::size_t i = 0; i < count.size(); ++i)
         mean.structure[i] /= count[i], mean.cloud[i] /= count[i];  // not a number where nothing judged
-      if (over_cloud(mean.cloud, mean.structure, o).better_by(2 * o.cloud_standard_errors)) break;  // beyond doubt
+      if (over_cloud(mean.cloud, mean.structure, o).better_by(2 * o.cloud_standard_errors))
+        break;  // beyond doubt
     }
     return mean;
   }
@@ -246,11 +257,12 @@ class Run {
   Fit tested(const Problem& problem, const Refiner& refiner, const std::string& name, Fit symmetric) {
     Fit plain = relaxed(problem, refiner, options_.engine, symmetric);
     const Comparison c = compare(symmetric.evidence, plain.evidence);
-    const bool without = c.better_by(options_.engine.evidence.standard_errors) && !names_a_group(options_.symmetry);
+    const bool without =
+        c.better_by(options_.engine.evidence.standard_errors) && !names_a_group(options_.symmetry);
     if (out_.symmetry) out_.symmetry->in_use = !without;
     const double sign = without ? -1 : 1;
-    out_.other = OtherTemplate{without ? name : "C1", fused_template(without ? symmetric : plain), sign * c.gain,
-                               c.standard_error};
+    out_.other = OtherTemplate{without ? name : "C1", fused_template(without ? symmetric : plain),
+                               sign * c.gain, c.standard_error};
     return without ? std::move(plain) : std::move(symmetric);
   }
 
@@ -278,8 +290,9 @@ class Run {
     const auto text = [](double v) { return std::to_string(v).substr(0, 6); };
     if (best != nullptr && best->gain > std::max(0.0, s.gain) && best->group != s.group &&
         best->gain - s.gain > std::hypot(best->gain_std, s.gain_std))
-      out_.warnings.push_back("registration.symmetry: " + s.group + " explains localisations kept apart worse than " +
-                              best->group + " does, by " + text(best->gain - s.gain) + " nat each");
+      out_.warnings.push_back("registration.symmetry: " + s.group +
+                              " explains localisations kept apart worse than " + best->group + " does, by " +
+                              text(best->gain - s.gain) + " nat each");
     if (s.gain < -s.gain_std)
       out_.warnings.push_back("registration.symmetry: " + s.group +
                               " explains localisations kept apart worse than no symmetry does, by " +

@@ -1,6 +1,6 @@
 // Every number that steers the engine, with its unit and where it comes from. "Measured": on the training
-// shapes, simulated pores and half of the real ones (docs/decisions). Lengths are in particle radii (the scale
-// of the views), angles in degrees, likelihoods in natural logarithms, unless a name says otherwise.
+// shapes, simulated pores and half of the real ones (docs/decisions). Lengths are in particle radii (the
+// scale of the views), angles in degrees, likelihoods in natural logarithms, unless a name says otherwise.
 #pragma once
 
 #include <cstdint>
@@ -23,80 +23,82 @@ struct AnnealOptions {
   int sweeps = 24;                    // of a start; measured
   double first_width = 0.25, last_width = 0.06;  // of the density; measured
   double first_beta = 0.05, last_beta = 1.0;     // inverse temperature; measured
-  double narrowing = 0.8;            // share of the sweeps after which width and temperature stay; measured
-  int rotations = 1000;              // of the grid over SO(3), turned in every sweep; half in the first half
-  int planar_rotations = 120;        // over the circle; chosen
-  int localisations = 128;           // of a view looked at; measured
-  int most_localisations = 400;      // of a view that make the density; measured
-  int most_judging = 80;             // of a view that judge it; chosen
-  double unit_share = 0.5;           // of them that one asymmetric unit of a group keeps at least; measured
-  int most_rotations = 60000;        // of a grid that a prior thins; chosen
-  int first_localisations = 64;      // in the first half of the sweeps; measured
-  double promising_share = 0.08;     // of the rotations whose shift is improved; measured
-  double shift = 0.1;                // standard deviation of the prior of shifts; measured
-  int samples = 16;                  // of a pose posterior; measured
-  int jitters = 8;                   // Metropolis steps of a sample; measured
-  int last_sweeps = 3;               // over all views, when those that competed have a template; measured
-  double climbing_beta = 0.3;        // from which the best rotations are climbed before they are weighed; measured
-  int climbed = 12;                  // best rotations that are; measured
-  double same_mode_deg = 8;          // within which two climbed poses are one mode; measured
+  double narrowing = 0.8;         // share of the sweeps after which width and temperature stay; measured
+  int rotations = 1000;           // of the grid over SO(3), turned in every sweep; half in the first half
+  int planar_rotations = 120;     // over the circle; chosen
+  int localisations = 128;        // of a view looked at; measured
+  int most_localisations = 400;   // of a view that make the density; measured
+  int most_judging = 80;          // of a view that judge it; chosen
+  double unit_share = 0.5;        // of them that one asymmetric unit of a group keeps at least; measured
+  int most_rotations = 60000;     // of a grid that a prior thins; chosen
+  int first_localisations = 64;   // in the first half of the sweeps; measured
+  double promising_share = 0.08;  // of the rotations whose shift is improved; measured
+  double shift = 0.1;             // standard deviation of the prior of shifts; measured
+  int samples = 16;               // of a pose posterior; measured
+  int jitters = 8;                // Metropolis steps of a sample; measured
+  int last_sweeps = 3;            // over all views, when those that competed have a template; measured
+  double climbing_beta = 0.3;  // from which the best rotations are climbed before they are weighed; measured
+  int climbed = 6;             // best rotations that are; measured
+  double same_mode_deg = 8;    // within which two climbed poses are one mode; measured
   double jitter_turn = 0.12, jitter_shift = 0.03;  // rad and radii, of a Metropolis step at beta 1; measured
-  int kept = 4;                      // samples of the last sweep that compete again; measured
-  double first_outlier_fraction = 0.05;  // chosen
-  double outlier_pseudo_share = 0.02;    // weight of the prior on the outlier fraction; measured
+  int kept = 4;                                    // samples of the last sweep that compete again; measured
+  double first_outlier_fraction = 0.05;            // chosen
+  double outlier_pseudo_share = 0.02;              // weight of the prior on the outlier fraction; measured
 };
 
-/// Starts that compete, and what is proposed to the best of them. More of either only while evidence tells them
-/// apart.
+/// Starts that compete, and what is proposed to the best of them. More of either only while evidence tells
+/// them apart.
 struct ProposalOptions {
-  int views = 96;              // that take part in the competition, evenly through the set; measured
-  int polar_views = 32;        // that the latent start poses; the others follow its template; measured
+  int views = 96;        // that take part in the competition, evenly through the set; measured
+  int polar_views = 32;  // that the latent start poses; the others follow its template; measured
   int fewest_starts = 2, most_starts = 4;  // random ones; measured
-  double alike_deg = 15;       // within which two starts pose a view alike, up to one common rotation; chosen
+  double alike_deg = 15;  // within which two starts pose a view alike, up to one common rotation; chosen
   double agreeing_share = 0.9;  // of the views that two starts pose alike when they agree; chosen
-  double regrown_share = 0.3;  // of the views from which a template is grown again; measured
+  double regrown_share = 0.3;   // of the views from which a template is grown again; measured
   double regrown_width = 0.12, regrown_beta = 0.35;  // first ones of a template that is grown again; measured
-  int regrown_sweeps = 10;     // measured
-  int rejected = 1;            // proposals in a row after which no more are made; measured
-  int most_proposals = 4;      // chosen
-  int fine_rejected = 1;       // the same of exact templates; chosen
+  int regrown_sweeps = 10;                           // measured
+  int rejected = 1;        // proposals in a row after which no more are made; measured
+  int most_proposals = 4;  // chosen
+  int fine_rejected = 1;   // the same of exact templates; chosen
 };
 
 /// Which groups are tried on the coarse template.
 struct SymmetryOptions {
   double similarity_blur = 0.08;  // of the density whose turns are compared; measured
-  double hint = 0.5;           // self-similarity from which a group is worth trying (1 the same, 0 any); chosen
+  double hint = 0.5;  // self-similarity from which a group is worth trying (1 the same, 0 any); chosen
   double polyhedral_hint = 0.15;  // the same of T, O and I, whose few sites a coarse template blurs; chosen
-  double axial_hint = 0.4;     // self-similarity under any turn about an axis, from which harmonics tell; measured
-  int highest_order = 12;      // of an axis tried; chosen
-  int orders = 3;              // of an axis, most significant first, that are tried; measured
+  double axial_hint =
+      0.4;  // self-similarity under any turn about an axis, from which harmonics tell; measured
+  int highest_order = 12;         // of an axis tried; chosen
+  int orders = 3;                 // of an axis, most significant first, that are tried; measured
   double least_significance = 1;  // of a harmonic, standard errors over views; chosen
-  int views = 300;             // that take part; measured
-  int sweeps = 10;             // of a trial; measured
+  int views = 200;                // that take part; measured
+  int sweeps = 10;                // of a trial; measured
   double first_width = 0.09, first_beta = 0.35, narrowing = 0.6;  // of a trial; measured
-  double means_standard_errors = 4;  // that a group may cost against none as a means, before it is tested; chosen
-  double means_loss = 0.25;   // and nat a localisation that it may cost at all; measured: pores .05 to .15
+  double means_standard_errors =
+      4;                       // that a group may cost against none as a means, before it is tested; chosen
+  double means_loss = 0.25;    // and nat a localisation that it may cost at all; measured: pores .05 to .15
   int relabellings = 2;        // tries to tell the images of a unit apart; chosen
   int relabelling_sweeps = 8;  // chosen
 };
 
 /// When a pose and a template are believed.
 struct VerdictOptions {
-  double least_posterior_share = 0.9;  // of a view's pose posterior within its stated spread; chosen
-  double most_rotation_std_deg = 30;   // of a pose that says anything; chosen
-  double most_outliers = 0.8;          // share of a view's localisations outside the template; chosen
-  int draws = 4;                       // of what judges, each with its own search; chosen
+  double least_posterior_share = 0.9;   // of a view's pose posterior within its stated spread; chosen
+  double most_rotation_std_deg = 30;    // of a pose that says anything; chosen
+  double most_outliers = 0.8;           // share of a view's localisations outside the template; chosen
+  int draws = 4;                        // of what judges, each with its own search; chosen
   double doubtful_standard_errors = 1;  // by which it must explain more at all, or there is none; chosen
-  double cloud_standard_errors = 3;    // by which a structure must explain more than a cloud; chosen
-  double most_gain = 1;                // nat a localisation over a cloud, either way, that a view counts for; chosen
-  double least_accepted_share = 0.3;   // of the particles when a structure counts as found; chosen
+  double cloud_standard_errors = 3;     // by which a structure must explain more than a cloud; chosen
+  double most_gain = 1;  // nat a localisation over a cloud, either way, that a view counts for; chosen
+  double least_accepted_share = 0.3;  // of the particles when a structure counts as found; chosen
 };
 
 /// From poses to a sharp template: search, fuse, narrower as long as held-out localisations gain.
 struct RefineOptions {
-  double localisations_per_centre = 25;  // of the template's mixture; measured
-  int fewest_centres = 96, most_centres = 256;  // measured
-  int fewest_of_unit = 8;                // centres of an asymmetric unit; measured
+  double localisations_per_centre = 25;                            // of the template's mixture; measured
+  int fewest_centres = 96, most_centres = 256;                     // measured
+  int fewest_of_unit = 8;                                          // centres of an asymmetric unit; measured
   double first_width = 0.09, last_width = 0.03, narrowing = 0.72;  // of the template; measured
   double search_width = 0.05;        // a search looks at the template no sharper than this; measured
   int rotations = 2304;              // of the search grid; exhaustive: 50,000 (the paper's)

@@ -50,8 +50,8 @@ void report_views(const Problem& problem, const EngineOptions& options, Fit& fit
   FusionData data(problem.views, problem.axes, fit.noise, problem.shuffled);
   std::vector<std::vector<int>> burst(problem.size());
   parallel_for(problem.size(), [&](std::size_t i) {
-    const std::vector<int> of =
-        bursts(problem.views.view[i], problem.axes[i], problem.noise, problem.shuffled[i], options.evidence.burst_distance);
+    const std::vector<int> of = bursts(problem.views.view[i], problem.axes[i], problem.noise,
+                                       problem.shuffled[i], options.evidence.burst_distance);
     for (const std::uint32_t j : problem.shuffled[i]) burst[i].push_back(of[j]);  // in the order of the data
   });
   std::vector<PolishedPose> polished;

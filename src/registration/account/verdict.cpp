@@ -31,9 +31,9 @@ void judge_registration(const Evidence& cloud, const Evidence& evidence, const V
   out.structure_gain = c.gain, out.structure_gain_std = c.standard_error;
   if (!c.better_by(options.doubtful_standard_errors)) {
     out.verdict = Verdict::none;
-    out.verdict_reason =
-        text("no structure: localisations kept apart are explained by %.3f +- %.3f nat better than by a cloud",
-             c.gain, c.standard_error);
+    out.verdict_reason = text(
+        "no structure: localisations kept apart are explained by %.3f +- %.3f nat better than by a cloud",
+        c.gain, c.standard_error);
     for (RegisteredView& v : out.view) {
       if (v.n_used < kFewestLocalisations) continue;  // it has a reason of its own
       v.accepted = false;
@@ -49,7 +49,8 @@ void judge_registration(const Evidence& cloud, const Evidence& evidence, const V
   out.verdict = clear && posed ? Verdict::found : Verdict::ambiguous;
   out.verdict_reason =
       text(clear ? "localisations kept apart are explained by %.2f +- %.2f nat better than by a cloud"
-                 : "localisations kept apart are explained by only %.2f +- %.2f nat better than by a cloud: they may "
+                 : "localisations kept apart are explained by only %.2f +- %.2f nat better than by a cloud: "
+                   "they may "
                    "have no structure in common",
            c.gain, c.standard_error) +
       text(posed ? "; the pose of %.0f %% of the particles is determined"

@@ -4,21 +4,21 @@
 #include <cmath>
 #include <numeric>
 
+#include "../data/template_tools.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 #include "polar/core/symmetry_group.hpp"
 #include "polar/flames/rotation_grid.hpp"
-#include "../data/template_tools.hpp"
 
 namespace polar {
 
 namespace {
 
 constexpr std::uint32_t kStartStage = 21, kGridStage = 23, kPoseStage = 24;
-constexpr std::size_t kDepositViews = 64;    // of one block of counts
-constexpr double kTiltReach = 2.6;           // standard deviations of the tilt prior that are searched
+constexpr std::size_t kDepositViews = 64;  // of one block of counts
+constexpr double kTiltReach = 2.6;         // standard deviations of the tilt prior that are searched
 
 double geometric(double first, double last, double t) { return first * std::pow(last / first, t); }
 
@@ -63,7 +63,8 @@ SoftPose turned_about(const SoftPose& pose, const Eigen::Vector3f& centre, const
   return {turn * pose.rotation, centre + turn * (pose.translation - centre)};
 }
 
-// Of the quaternion (1, w / 2), normalised: a rotation about w by nearly its length, cheaper than the exponential.
+// Of the quaternion (1, w / 2), normalised: a rotation about w by nearly its length, cheaper than the
+// exponential.
 Eigen::Matrix3f small_turn(const Eigen::Vector3f& w) {
   return Eigen::Quaternionf(1, 0.5f * w.x(), 0.5f * w.y(), 0.5f * w.z()).normalized().toRotationMatrix();
 }
@@ -88,9 +89,12 @@ namespace {
 // ln of likelihood and prior of one view's poses, scaled so that beta times it is the tempered posterior.
 class Scorer {
  public:
-  Scorer(const LogVolume& volume, const LookupPoints& points, const PosePrior& prior, const Eigen::Vector3f& centre,
-         double shift, double prior_weight)
-      : volume_(volume), points_(points), prior_(prior), centre_(centre),
+  Scorer(const LogVolume& volume, const LookupPoints& points, const PosePrior& prior,
+         const Eigen::Vector3f& centre, double shift, double prior_weight)
+      : volume_(volume),
+        points_(points),
+        prior_(prior),
+        centre_(centre),
         by_shift_(static_cast<float>(-0.5 * prior_weight / (shift * shift))),
         by_tilt_(prior.tilt_rad > 0
                      ? static_cast<float>(-0.5 * prior_weight / (prior.tilt_rad * prior.tilt_rad))
@@ -121,8 +125,8 @@ class Scorer {
   float by_shift_, by_tilt_;
 };
 
-constexpr int kMostClimbs = 3;        // steps of one size
-constexpr float kClimbGain = 1e-3f;   // less is rounding
+constexpr int kMostClimbs = 3;       // steps of one size
+constexpr float kClimbGain = 1e-3f;  // less is rounding
 
 // Uphill over the neighbours along the axes of rotation and shift; steps halve.
 float climb(const Scorer& scorer, const Eigen::Vector3f& centre, float turn, float shift, int levels,
@@ -132,7 +136,8 @@ float climb(const Scorer& scorer, const Eigen::Vector3f& centre, float turn, flo
     Eigen::Matrix3f turns[6];
     int ways = 0;
     for (int a = planar ? 2 : 0; a < 3; ++a)
-      for (const float sign : {-1.0f, 1.0f}) turns[ways++] = small_turn(sign * turn * Eigen::Vector3f::Unit(a));
+      for (const float sign : {-1.0f, 1.0f})
+        turns[ways++] = small_turn(sign * turn * Eigen::Vector3f::Unit(a));
     for (int step = 0; step < kMostClimbs; ++step) {
       SoftPose best = pose;
       float most = score;
@@ -140,7 +145,8 @@ float climb(const Scorer& scorer, const Eigen::Vector3f& centre, float turn, flo
       float at[6];
       int n = 0;
       for (int a = 0; a < (planar ? 2 : 3); ++a)
-        for (const float sign : {-1.0f, 1.0f}) there[n++] = pose.translation + sign * shift * Eigen::Vector3f::Unit(a);
+        for (const float sign : {-1.0f, 1.0f})
+          there[n++] = pose.translation + sign * shift * Eigen::Vector3f::Unit(a);
       scorer(pose.rotation, there, static_cast<std::size_t>(n), at);
       for (int k = 0; k < n; ++k)
         if (at[k] > most) most = at[k], best = {pose.rotation, there[k]};
@@ -160,16 +166,22 @@ float climb(const Scorer& scorer, const Eigen::Vector3f& centre, float turn, flo
 
 SoftAnnealer::SoftAnnealer(const Problem& problem, std::vector<int> which, const AnnealOptions& options,
                            const PosePrior& prior)
-    : problem_(problem), which_(std::move(which)), options_(options), prior_(prior),
+    : problem_(problem),
+      which_(std::move(which)),
+      options_(options),
+      prior_(prior),
       frame_(options.reach, problem.planar() ? options.planar_voxel : options.voxel, problem.planar()),
-      all_(problem.size()), fitted_(problem.size()), judging_(problem.size()) {
+      all_(problem.size()),
+      fitted_(problem.size()),
+      judging_(problem.size()) {
   parallel_for(which_.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(which_[k]);
-    all_[i] = points_of(problem.views.view[i], problem.sampled[i], static_cast<std::size_t>(options.most_localisations));
+    all_[i] = points_of(problem.views.view[i], problem.sampled[i],
+                        static_cast<std::size_t>(options.most_localisations));
     fitted_[i] = points_of(problem.views.view[i], problem.fitted[i],
                            static_cast<std::size_t>(options.most_localisations));
-    judging_[i] = points_of(problem.views.view[i], problem.held_out[i],
-                            static_cast<std::size_t>(options.most_judging));
+    judging_[i] =
+        points_of(problem.views.view[i], problem.held_out[i], static_cast<std::size_t>(options.most_judging));
   });
 }
 
@@ -217,21 +229,22 @@ void SoftAnnealer::fuse(const Points& points, double width, SoftState& state) co
   std::vector<Eigen::Matrix3f> images = {Eigen::Matrix3f::Identity()};
   for (std::size_t g = 1; g < state.group.size(); ++g) images.push_back(state.group[g].cast<float>());
   VoxelCounts zero(frame_);
-  const VoxelCounts counts = ordered_sum(which_.size(), kDepositViews, zero, [&](std::size_t b, std::size_t e) {
-    VoxelCounts some(frame_);
-    for (std::size_t v = b; v < e; ++v) {
-      const auto i = static_cast<std::size_t>(which_[v]);
-      const auto& samples = state.sample[i];
-      if (samples.empty()) continue;
-      const std::uint32_t weight = std::max(1u, kWhole / static_cast<std::uint32_t>(samples.size()));
-      // Under a group fewer samples say as much: each comes with its images.
-      const std::size_t step = std::clamp<std::size_t>(images.size() / 4, 1, samples.size());
-      for (std::size_t k = 0; k < samples.size(); k += step)
-        for (const Eigen::Matrix3f& g : images)
-          some.add(points[i], g * samples[k].rotation, g * samples[k].translation, weight);
-    }
-    return some;
-  });
+  const VoxelCounts counts =
+      ordered_sum(which_.size(), kDepositViews, zero, [&](std::size_t b, std::size_t e) {
+        VoxelCounts some(frame_);
+        for (std::size_t v = b; v < e; ++v) {
+          const auto i = static_cast<std::size_t>(which_[v]);
+          const auto& samples = state.sample[i];
+          if (samples.empty()) continue;
+          const std::uint32_t weight = std::max(1u, kWhole / static_cast<std::uint32_t>(samples.size()));
+          // Under a group fewer samples say as much: each comes with its images.
+          const std::size_t step = std::clamp<std::size_t>(images.size() / 4, 1, samples.size());
+          for (std::size_t k = 0; k < samples.size(); k += step)
+            for (const Eigen::Matrix3f& g : images)
+              some.add(points[i], g * samples[k].rotation, g * samples[k].translation, weight);
+        }
+        return some;
+      });
   DensityGrid density(counts);
   density.blur(width);
   density.normalise();
@@ -246,8 +259,8 @@ void SoftAnnealer::fuse(const Points& points, double width, SoftState& state) co
   }
   const double prior = options_.outlier_pseudo_share;
   if (total > 0)
-    state.outlier_fraction = std::clamp((outliers / total + options_.first_outlier_fraction * prior) / (1 + prior),
-                                        0.01, 0.5);
+    state.outlier_fraction =
+        std::clamp((outliers / total + options_.first_outlier_fraction * prior) / (1 + prior), 0.01, 0.5);
   state.density = std::move(density);
   state.width = width;
 }
@@ -260,7 +273,8 @@ struct SoftAnnealer::Looked {
   double beta;
 };
 
-std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view, const std::vector<Eigen::Matrix3f>& grid,
+std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
+                                                         const std::vector<Eigen::Matrix3f>& grid,
                                                          double spacing, KeyedRandom& random) const {
   const bool planar = problem_.planar();
   const double beta = view.beta, prior_weight = 1 / std::max(beta, 0.02);
@@ -273,12 +287,14 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view, con
   for (std::size_t r = 0; r < n; ++r) coarse(grid[r], &centre, 1, &rough[r]);
   std::vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
-  const std::size_t promising =
-      std::min(n, std::max<std::size_t>(24, static_cast<std::size_t>(options_.promising_share * static_cast<double>(n))));
+  const std::size_t promising = std::min(
+      n,
+      std::max<std::size_t>(24, static_cast<std::size_t>(options_.promising_share * static_cast<double>(n))));
   const auto better = [&](std::uint32_t a, std::uint32_t b) {
     return rough[a] != rough[b] ? rough[a] > rough[b] : a < b;
   };
-  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising) - 1, order.end(), better);
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising) - 1, order.end(),
+                   better);
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising));
   std::vector<Draw> found(promising);
   const auto step = static_cast<float>(options_.shift);
@@ -303,8 +319,10 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view, con
   if (beta >= options_.climbing_beta) {
     std::stable_sort(found.begin(), found.end(), by_score);
     std::vector<Draw> peaks;
-    for (std::size_t k = 0; k < std::min<std::size_t>(found.size(), static_cast<std::size_t>(options_.climbed)); ++k) {
-      if (k > 3 && beta * static_cast<double>(found[k].score - found[0].score) < -14) break;  // e^-14: never drawn
+    for (std::size_t k = 0;
+         k < std::min<std::size_t>(found.size(), static_cast<std::size_t>(options_.climbed)); ++k) {
+      if (k > 3 && beta * static_cast<double>(found[k].score - found[0].score) < -14)
+        break;  // e^-14: never drawn
       Draw d = found[k];
       d.score = climb(score, centre, static_cast<float>(0.7 * spacing), 0.6f * step, 2, planar, d.pose);
       peaks.push_back(d);
@@ -339,8 +357,7 @@ void SoftAnnealer::draw_poses(const Points& points, const Sweep& sweep, SoftStat
     const auto n = options_.planar_rotations / static_cast<int>(std::max<std::size_t>(1, state.group.size()));
     const double first = turns.uniform();
     spacing = kTwoPi / options_.planar_rotations;
-    for (int i = 0; i < n; ++i)
-      grid.push_back(so3_exp({0, 0, spacing * (i + first)}).cast<float>());
+    for (int i = 0; i < n; ++i) grid.push_back(so3_exp({0, 0, spacing * (i + first)}).cast<float>());
   } else {
     // Rotations that a prior or a group leaves out are spent on the others.
     double share = 1;
@@ -348,7 +365,8 @@ void SoftAnnealer::draw_poses(const Points& points, const Sweep& sweep, SoftStat
     if (prior_.tilt_rad > 0) share = (1 - lowest) / 2 * (prior_.flip ? 2 : 1);
     const auto order = static_cast<double>(std::max<std::size_t>(1, state.group.size()));
     const int whole =
-        std::min(options_.most_rotations, static_cast<int>(sweep.rotations / share * std::max(1.0, order * options_.unit_share)));
+        std::min(options_.most_rotations,
+                 static_cast<int>(sweep.rotations / share * std::max(1.0, order * options_.unit_share)));
     const Eigen::Matrix3f turn = turns.rotation().cast<float>();
     for (const Eigen::Quaternionf& q : super_fibonacci(whole)) {
       const Eigen::Matrix3f r = q.toRotationMatrix() * turn;
@@ -421,11 +439,12 @@ void SoftAnnealer::continue_under(const AnnealStage& stage, std::uint64_t key, S
     const double f = stage.sweeps > 1 ? static_cast<double>(t) / (stage.sweeps - 1) : 1.0;
     const double g = std::min(1.0, f / stage.narrowing);
     const bool early = stage.from_nothing && f < 0.5;
-    draw_poses(all_,
-               {geometric(stage.first_beta, stage.last_beta, g), early ? options_.rotations / 2 : options_.rotations,
-                early ? options_.first_localisations : options_.localisations,
-                key * 1024 + static_cast<std::uint64_t>(t)},
-               state);
+    draw_poses(
+        all_,
+        {geometric(stage.first_beta, stage.last_beta, g), early ? options_.rotations / 2 : options_.rotations,
+         early ? options_.first_localisations : options_.localisations,
+         key * 1024 + static_cast<std::uint64_t>(t)},
+        state);
     fuse(geometric(stage.first_width, stage.last_width, g), state);
   }
 }

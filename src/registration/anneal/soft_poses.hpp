@@ -9,8 +9,8 @@
 #include "../data/evidence.hpp"
 #include "../data/problem.hpp"
 #include "polar/core/rng.hpp"
-#include "polar/fusion/orbits.hpp"
 #include "polar/fusion/density_grid.hpp"
+#include "polar/fusion/orbits.hpp"
 #include "polar/registration/engine_options.hpp"
 
 namespace polar {
@@ -31,8 +31,8 @@ struct SoftState {
   std::vector<SoftPose> best;                 // of every view: the likeliest found
   DensityGrid density;
   double outlier_fraction = 0.05;
-  double width = 0;      // of the density
-  RotationGroup group;   // of the density; empty: none
+  double width = 0;     // of the density
+  RotationGroup group;  // of the density; empty: none
   explicit SoftState(const VoxelFrame& frame) : density(frame) {}
 };
 

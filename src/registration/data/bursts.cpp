@@ -52,7 +52,8 @@ std::vector<int> bursts(const View& view, const Eigen::Vector3f& axis, const Noi
   factors.lateral_factor = noise.lateral_factor, factors.axial_factor = noise.axial_factor;
   factors.planar = noise.planar;
   View scaled{view.points, {}};
-  for (const Symmetric3& c : view.covariance) scaled.covariance.push_back(effective_covariance(c, axis, factors));
+  for (const Symmetric3& c : view.covariance)
+    scaled.covariance.push_back(effective_covariance(c, axis, factors));
   return bursts(scaled, order, distance, noise.planar);
 }
 

@@ -17,7 +17,9 @@ struct Comparison {
   double gain = 0, standard_error = 0;
   int views = 0;
   /// Whether b is better by so many standard errors (0: at all; negative: not worse by so many).
-  bool better_by(double standard_errors) const { return views > 0 && gain > standard_errors * standard_error; }
+  bool better_by(double standard_errors) const {
+    return views > 0 && gain > standard_errors * standard_error;
+  }
 };
 Comparison compare(const Evidence& a, const Evidence& b);
 

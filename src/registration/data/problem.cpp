@@ -52,7 +52,8 @@ Problems make_problems(const Views& views, const EvidenceOptions& options, std::
   const std::size_t n = views.view.size();
   Problem plain{views, {}, {}, {}, {}, {}, {}, false, noise, seed, 0};
   plain.noise.planar = views.planar;
-  plain.axes.resize(n), plain.shuffled.resize(n), plain.sampled.resize(n), plain.fitted.resize(n), plain.held_out.resize(n);
+  plain.axes.resize(n), plain.shuffled.resize(n), plain.sampled.resize(n), plain.fitted.resize(n),
+      plain.held_out.resize(n);
   Problem thinned = plain;
   thinned.crowded = true;
   parallel_for(n, [&](std::size_t i) {
@@ -64,7 +65,7 @@ Problems make_problems(const Views& views, const EvidenceOptions& options, std::
     thinned.shuffled[i] = sampling_order(weight, KeyedRandom(seed, i, kThinningStage));
     plain.shuffled[i] =
         sampling_order(std::vector<double>(weight.size(), 1.0), KeyedRandom(seed, i, kShuffleStage));
-    const std::vector<int> burst = 
+    const std::vector<int> burst =
         bursts(view, plain.axes[i], plain.noise, plain.shuffled[i], options.burst_distance);
     const std::vector<bool> judges = judging_bursts(burst, plain.shuffled[i], options.held_out_share);
     const auto is_held_out = [&](std::uint32_t j) {

@@ -19,7 +19,8 @@ struct Problem {
   Subsets fitted;    // of these, the bursts that templates are fitted to while something is judged
   Subsets held_out;  // of the other bursts, a few localisations of each: they judge
   std::vector<int> all;
-  bool crowded = false;  // samples are thinned because strands are expected: centres need the support of many views
+  bool crowded =
+      false;  // samples are thinned because strands are expected: centres need the support of many views
   NoiseModel noise;  // by whose factors bursts are told apart
   std::uint64_t seed = 1;
   double localisations = 0;

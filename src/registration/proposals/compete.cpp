@@ -25,10 +25,12 @@ struct Hypothesis {
 class Contest {
  public:
   Contest(const Problems& problems, const RegistrationOptions& options)
-      : options_(options), which_(some_views(problems.plain, static_cast<std::size_t>(options.engine.proposals.views))),
+      : options_(options),
+        which_(some_views(problems.plain, static_cast<std::size_t>(options.engine.proposals.views))),
         prior_{options.tilt_deg * kRadiansPerDegree, options.flip},
         plain_(problems.plain, which_, options.engine.anneal, prior_),
-        thinned_(problems.thinned, which_, options.engine.anneal, prior_), seed_(problems.plain.seed) {}
+        thinned_(problems.thinned, which_, options.engine.anneal, prior_),
+        seed_(problems.plain.seed) {}
 
   void add(Hypothesis h) {
     ++number_;
@@ -41,8 +43,11 @@ class Contest {
       clearly_ = c.better_by(1) || compare(h.evidence, entered_[best_].evidence).better_by(1);
     }
     entered_.push_back(std::move(h));
-    if (entered_.size() == 1 || won_) second_ = best_, best_ = entered_.size() - 1;
-    else if (entered_.size() == 2 || mean_evidence(entered_[second_].evidence) < mean_evidence(entered_.back().evidence) || second_ == best_)
+    if (entered_.size() == 1 || won_)
+      second_ = best_, best_ = entered_.size() - 1;
+    else if (entered_.size() == 2 ||
+             mean_evidence(entered_[second_].evidence) < mean_evidence(entered_.back().evidence) ||
+             second_ == best_)
       second_ = entered_.size() - 1;
   }
 
@@ -51,8 +56,9 @@ class Contest {
     Hypothesis h{SoftState(plain_.frame()), {}, k % 2 == 0 && k > 0, {}};  // the second of two is thinned
     h.report.name = "random " + std::to_string(k);
     h.state = of(h.crowded).random_start(static_cast<std::uint64_t>(k));
-    of(h.crowded).anneal({o.sweeps, o.first_width, o.last_width, o.first_beta, o.last_beta, o.narrowing, true},
-                         static_cast<std::uint64_t>(k), h.state);
+    of(h.crowded).anneal(
+        {o.sweeps, o.first_width, o.last_width, o.first_beta, o.last_beta, o.narrowing, true},
+        static_cast<std::uint64_t>(k), h.state);
     return h;
   }
 
@@ -130,8 +136,8 @@ class Contest {
 
 }  // namespace
 
-double share_alike(const std::vector<SoftPose>& a, const std::vector<SoftPose>& b, const std::vector<int>& which,
-                   double within_rad) {
+double share_alike(const std::vector<SoftPose>& a, const std::vector<SoftPose>& b,
+                   const std::vector<int>& which, double within_rad) {
   if (which.empty()) return 0;
   const float least = 1 + 2 * static_cast<float>(std::cos(within_rad));  // of a trace
   std::size_t most = 0;

@@ -26,7 +26,7 @@ Competition compete(const Problems& problems, const Autoencoder* model, const Re
                     Progress& progress);
 
 /// Share of the views that two lists of poses place alike, up to the common rotation that suits most of them.
-double share_alike(const std::vector<SoftPose>& a, const std::vector<SoftPose>& b, const std::vector<int>& which,
-                   double within_rad);
+double share_alike(const std::vector<SoftPose>& a, const std::vector<SoftPose>& b,
+                   const std::vector<int>& which, double within_rad);
 
 }  // namespace polar

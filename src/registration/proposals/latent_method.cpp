@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../data/template_tools.hpp"
 #include "polar/core/median.hpp"
 #include "polar/fusion/mixture.hpp"
 #include "polar_start.hpp"
-#include "../data/template_tools.hpp"
 
 namespace polar {
 

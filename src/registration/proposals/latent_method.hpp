@@ -1,9 +1,9 @@
 // method: latent, the paper's own end.
 #pragma once
 
+#include "../data/problem.hpp"
 #include "polar/model/autoencoder.hpp"
 #include "polar/registration/register.hpp"
-#include "../data/problem.hpp"
 
 namespace polar {
 

@@ -42,8 +42,8 @@ LatentOptions latent_options(const RegistrationOptions& options) {
   return latent;
 }
 
-std::vector<SoftPose> polar_poses(const Problem& problem, const std::vector<int>& which, const Autoencoder& model,
-                                  const RegistrationOptions& options) {
+std::vector<SoftPose> polar_poses(const Problem& problem, const std::vector<int>& which,
+                                  const Autoencoder& model, const RegistrationOptions& options) {
   LatentOptions few = latent_options(options);
   few.localisations = std::min(few.localisations, kLocalisations);
   few.basins = std::min(few.basins, kBasins);

@@ -26,7 +26,7 @@ LatentModel latent_model(const RegistrationOptions& options);
 LatentOptions latent_options(const RegistrationOptions& options);
 
 /// A short latent registration of the views `which`: their poses, identity for the others.
-std::vector<SoftPose> polar_poses(const Problem& problem, const std::vector<int>& which, const Autoencoder& model,
-                                  const RegistrationOptions& options);
+std::vector<SoftPose> polar_poses(const Problem& problem, const std::vector<int>& which,
+                                  const Autoencoder& model, const RegistrationOptions& options);
 
 }  // namespace polar

@@ -17,7 +17,8 @@ namespace polar {
 namespace {
 
 constexpr std::uint32_t kTurnStage = 31, kCloudStage = 33;
-constexpr Eigen::Index kCloudCentres = 12000;  // of a template turned any way: its shells err by a few per cent
+constexpr Eigen::Index kCloudCentres =
+    12000;                         // of a template turned any way: its shells err by a few per cent
 constexpr double kPooled = 2;      // spreads of a centre, within which a view tells centres apart no better
 constexpr int kJudgingSweeps = 2;  // without the held-out localisations, before they judge
 
@@ -44,8 +45,10 @@ Fit Refiner::begin(std::vector<Pose> pose, const NoiseModel& noise, const Rotati
   fit.group = group;
   fit.margin.assign(problem_.size(), INFINITY);
   const Subsets few = first_of(problem_.sampled, static_cast<std::size_t>(options_.localisations));
-  const int wanted = centres_for(problem_, options_) / static_cast<int>(std::max<std::size_t>(1, group.size()));
-  fit.mixture = scattered_mixture(problem_, few, problem_.all, fit.pose, std::max(wanted, options_.fewest_of_unit), 1);
+  const int wanted =
+      centres_for(problem_, options_) / static_cast<int>(std::max<std::size_t>(1, group.size()));
+  fit.mixture =
+      scattered_mixture(problem_, few, problem_.all, fit.pose, std::max(wanted, options_.fewest_of_unit), 1);
   if (!group.empty()) fit.mixture = symmetrised(fit.mixture, group, 0.5 * options_.first_width);
   sweep(few, fit, 2 * options_.sweeps);
   return fit;
@@ -80,9 +83,8 @@ void Refiner::search(Fit& fit) const { search(problem_.sampled, fit); }
 
 void Refiner::search(const Subsets& subsets, Fit& fit) const {
   NoiseModel noise = fit.noise;
-  noise.width = std::sqrt(std::max(noise.width * noise.width,
-                                   options_.search_width * options_.search_width -
-                                       noise.lateral_extra * noise.lateral_extra));
+  noise.width = std::sqrt(std::max(noise.width * noise.width, options_.search_width * options_.search_width -
+                                                                  noise.lateral_extra * noise.lateral_extra));
   SearchAgainOptions o;
   o.basins = options_.basins;
   o.group = fit.group;
@@ -92,8 +94,8 @@ void Refiner::search(const Subsets& subsets, Fit& fit) const {
   o.grid.step = static_cast<float>(options_.step);
   const Eigen::Matrix3f turn = grid_turn(
       problem_.planar(), KeyedRandom(problem_.seed, static_cast<std::uint64_t>(fit.rounds), kTurnStage));
-  SearchAgainReport report = search_again(problem_.views, problem_.axes, subsets, fit.mixture, noise,
-                                          grid_, turn, o, fit.pose);
+  SearchAgainReport report =
+      search_again(problem_.views, problem_.axes, subsets, fit.mixture, noise, grid_, turn, o, fit.pose);
   fit.margin = std::move(report.margin);
   fit.escaped = static_cast<int>(report.escaped.size());
   ++fit.rounds;
@@ -101,7 +103,8 @@ void Refiner::search(const Subsets& subsets, Fit& fit) const {
 
 // Fitted again without the held-out localisations.
 Fit Refiner::blind(Fit fit) const {
-  fit.occupancy = std::numeric_limits<double>::infinity();  // a label that judges is missing in what was fitted
+  fit.occupancy =
+      std::numeric_limits<double>::infinity();  // a label that judges is missing in what was fitted
   sweep(first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations)), fit, kJudgingSweeps);
   return fit;
 }
@@ -118,9 +121,9 @@ Evidence Refiner::judge(const Fit& fit) const { return held_out(blind(fit)); }
 
 Refiner::AgainstCloud Refiner::judge_against_cloud(Fit fit) const {
   // A structure that is there shows at the first width already; the last one is as fine as all views allow.
-  fit.noise.width = std::sqrt(std::max(fit.noise.width * fit.noise.width,
-                                       options_.first_width * options_.first_width -
-                                           fit.noise.lateral_extra * fit.noise.lateral_extra));
+  fit.noise.width = std::sqrt(std::max(
+      fit.noise.width * fit.noise.width,
+      options_.first_width * options_.first_width - fit.noise.lateral_extra * fit.noise.lateral_extra));
   fit = blind(std::move(fit));
   search(problem_.fitted, fit);
   fit = blind(std::move(fit));
@@ -151,7 +154,8 @@ Fit Refiner::rounds(Fit fit, Progress& progress) const {
   Fit best = fit;
   bool searching = true;
   for (int round = 0; round < total && !progress.cancelled(); ++round) {
-    fit.noise.width = std::max(options_.last_width, options_.first_width * std::pow(options_.narrowing, round));
+    fit.noise.width =
+        std::max(options_.last_width, options_.first_width * std::pow(options_.narrowing, round));
     if (searching && round < options_.most_searches) {
       search(fit);
       searching = round == 0 || fit.escaped > options_.settled * static_cast<double>(problem_.size());
@@ -203,30 +207,34 @@ Fit Refiner::discrete(Fit fit) const {
   return fit;
 }
 
-// A template fitted under too much noise is too sharp to tell that there is less of it, so that every proposal
-// gets a template of its own.
+// A template fitted under too much noise is too sharp to tell that there is less of it, so that every
+// proposal gets a template of its own.
 Fit Refiner::with_noise(Fit fit) const {
   struct Way {
     double lateral, axial, width;  // of the logarithms of the factors and of the width, in steps
   };
   std::vector<Way> ways = {{-1, -1, 0}, {-1, -1, 1}, {0, 0, 1}, {1, 1, 0}};
-  if (has_axial_noise(problem_.views, problem_.axes)) ways.insert(ways.end(), {{0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}});
+  if (has_axial_noise(problem_.views, problem_.axes))
+    ways.insert(ways.end(), {{0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}});
   fit.evidence = judge(fit);
-  fit = narrowed(std::move(fit));  // or a template that is too wide would be taken for noise that is overstated
+  fit =
+      narrowed(std::move(fit));  // or a template that is too wide would be taken for noise that is overstated
   int tries = 0;
-  for (bool moved = true; moved && tries < options_.noise_tries;) {
-    moved = false;
-    for (std::size_t w = 0; w < ways.size(); ++w)
-      for (bool better = true; better && tries < options_.noise_tries; ++tries) {
-        Fit next = fit;
-        next.noise.lateral_factor *= std::pow(options_.noise_step, ways[w].lateral);
-        next.noise.axial_factor *= std::pow(options_.noise_step, ways[w].axial);
-        next.noise.width *= std::pow(options_.noise_step, ways[w].width);
-        sweep(next, options_.sweeps);
-        next.evidence = judge(next);
-        better = compare(fit.evidence, next.evidence).better_by(standard_errors_);
-        if (better) fit = std::move(next), moved = true;
-      }
+  std::size_t failed = 0;  // ways in a row
+  for (std::size_t w = 0; failed < ways.size() && tries < options_.noise_tries; ++tries) {
+    Fit next = fit;
+    next.noise.lateral_factor *= std::pow(options_.noise_step, ways[w].lateral);
+    next.noise.axial_factor *= std::pow(options_.noise_step, ways[w].axial);
+    next.noise.width *= std::pow(options_.noise_step, ways[w].width);
+    sweep(next, options_.sweeps);
+    next.evidence = judge(next);
+    if (compare(fit.evidence, next.evidence).better_by(standard_errors_)) {
+      fit = std::move(next);
+      failed = 0;
+    } else {
+      ++failed;
+      w = (w + 1) % ways.size();
+    }
   }
   return fit;
 }
@@ -236,7 +244,9 @@ Fit Refiner::calibrated(Fit fit) const {
   for (int c = 0; c < options_.calibrations; ++c) {
     Fit next = fit, blind = fit;
     sweep(fitted, blind, kJudgingSweeps);
-    next.noise = calibrate(problem_.views, problem_.axes, problem_.held_out, blind.mixture, blind.pose, fit.noise).noise;
+    next.noise =
+        calibrate(problem_.views, problem_.axes, problem_.held_out, blind.mixture, blind.pose, fit.noise)
+            .noise;
     sweep(next, options_.sweeps);
     next.evidence = judge(next);
     if (!compare(fit.evidence, next.evidence).better_by(0)) break;

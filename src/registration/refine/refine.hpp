@@ -19,10 +19,10 @@ struct Fit {
   Mixture mixture;
   std::vector<Pose> pose;  // template_from_view, all views
   NoiseModel noise;
-  RotationGroup group;          // of the template; empty: none
-  std::vector<double> margin;   // of the last search
+  RotationGroup group;                                         // of the template; empty: none
+  std::vector<double> margin;                                  // of the last search
   double occupancy = std::numeric_limits<double>::infinity();  // strength (polar/fusion/occupancy.hpp)
-  Evidence evidence;            // of all views, at this width and noise
+  Evidence evidence;                                           // of all views, at this width and noise
   int rounds = 0;
   int escaped = 0;  // views that moved far in the last search
 };
@@ -33,7 +33,9 @@ void show(const Fit& fit, const Mixture& mixture, FusionData& data);
 class Refiner {
  public:
   Refiner(const Problem& problem, const SearchGrid& grid, const EngineOptions& options)
-      : problem_(problem), grid_(grid), options_(options.refine),
+      : problem_(problem),
+        grid_(grid),
+        options_(options.refine),
         standard_errors_(options.evidence.standard_errors) {}
 
   /// A template under these poses, at the first width.

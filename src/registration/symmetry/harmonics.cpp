@@ -45,8 +45,8 @@ std::vector<AxialHarmonic> axial_harmonics(const Problem& problem, const Evidenc
   std::vector<std::vector<double>> mean(which.size());  // of every view, by order
   parallel_for(which.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(which[k]);
-    const std::vector<int> burst =
-        bursts(problem.views.view[i], problem.axes[i], problem.noise, problem.sampled[i], options.burst_distance);
+    const std::vector<int> burst = bursts(problem.views.view[i], problem.axes[i], problem.noise,
+                                          problem.sampled[i], options.burst_distance);
     for (int order = 2; order <= highest; ++order) {
       std::map<int, std::vector<Phasor>> of_burst;
       for (const std::uint32_t j : problem.sampled[i]) {
@@ -64,18 +64,21 @@ std::vector<AxialHarmonic> axial_harmonics(const Problem& problem, const Evidenc
     const Comparison c = compare(nothing, found);
     out.push_back({order, c.standard_error > 0 ? c.gain / c.standard_error : 0});
   }
-  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.significance > b.significance; });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const auto& a, const auto& b) { return a.significance > b.significance; });
   return out;
 }
 
-void align_azimuths(const Problem& problem, int order, const std::vector<int>& which, std::vector<SoftPose>& pose) {
+void align_azimuths(const Problem& problem, int order, const std::vector<int>& which,
+                    std::vector<SoftPose>& pose) {
   parallel_for(which.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(which[k]);
     Phasor sum = 0;
     for (const std::uint32_t j : problem.sampled[i]) sum += phasor(problem, i, j, pose[i], order);
     if (sum == Phasor(0)) return;
     const Eigen::Matrix3f back =
-        Eigen::AngleAxisf(static_cast<float>(-std::arg(sum) / order), Eigen::Vector3f::UnitZ()).toRotationMatrix();
+        Eigen::AngleAxisf(static_cast<float>(-std::arg(sum) / order), Eigen::Vector3f::UnitZ())
+            .toRotationMatrix();
     pose[i] = {back * pose[i].rotation, back * pose[i].translation};
   });
 }

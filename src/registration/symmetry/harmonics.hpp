@@ -1,5 +1,5 @@
-// What the azimuths of a view's localisations about an axis say of the order of that axis, whatever the turn of
-// the view about it. Labels that sit at random on n-fold sites have azimuths whose n-th harmonic does not
+// What the azimuths of a view's localisations about an axis say of the order of that axis, whatever the turn
+// of the view about it. Labels that sit at random on n-fold sites have azimuths whose n-th harmonic does not
 // vanish, and none below it that does not either.
 #pragma once
 
@@ -16,13 +16,15 @@ struct AxialHarmonic {
   double significance = 0;
 };
 
-/// Orders 2 ... highest, most significant first. Poses are template_from_view with the axis along z through the
-/// origin.
+/// Orders 2 ... highest, most significant first. Poses are template_from_view with the axis along z through
+/// the origin.
 std::vector<AxialHarmonic> axial_harmonics(const Problem& problem, const EvidenceOptions& options,
                                            const std::vector<SoftPose>& pose, const std::vector<int>& which,
                                            int highest);
 
-/// Turns every pose about z so that its harmonic of that order has phase 0: n-fold sites then lie on each other.
-void align_azimuths(const Problem& problem, int order, const std::vector<int>& which, std::vector<SoftPose>& pose);
+/// Turns every pose about z so that its harmonic of that order has phase 0: n-fold sites then lie on each
+/// other.
+void align_azimuths(const Problem& problem, int order, const std::vector<int>& which,
+                    std::vector<SoftPose>& pose);
 
 }  // namespace polar

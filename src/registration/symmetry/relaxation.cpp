@@ -13,7 +13,8 @@ namespace {
 constexpr std::uint32_t kImageStage = 45;
 
 // One image of every pose, drawn with probability exp(beta L) under the present template.
-void draw_images(const Problem& problem, const RotationGroup& group, double beta, std::uint64_t key, Fit& fit) {
+void draw_images(const Problem& problem, const RotationGroup& group, double beta, std::uint64_t key,
+                 Fit& fit) {
   const FusionData data(problem.views, problem.axes, fit.noise, problem.fitted);
   std::vector<std::vector<double>> score(group.size());
   std::vector<std::vector<Pose>> image(group.size(), fit.pose);
@@ -39,7 +40,8 @@ void draw_images(const Problem& problem, const RotationGroup& group, double beta
 
 }  // namespace
 
-Fit relaxed(const Problem& problem, const Refiner& refiner, const EngineOptions& options, const Fit& symmetric) {
+Fit relaxed(const Problem& problem, const Refiner& refiner, const EngineOptions& options,
+            const Fit& symmetric) {
   const SymmetryOptions& o = options.symmetry;
   const RotationGroup group = symmetric.group;
   Fit best;
@@ -51,10 +53,11 @@ Fit relaxed(const Problem& problem, const Refiner& refiner, const EngineOptions&
     draw_images(problem, group, 0, key, fit);
     refiner.sweep_blind(fit, 2);
     for (int t = 0; t < o.relabelling_sweeps; ++t) {
-      const double beta = t + 1 == o.relabelling_sweeps ? 1 : static_cast<double>(t + 1) / o.relabelling_sweeps;
+      const double beta =
+          t + 1 == o.relabelling_sweeps ? 1 : static_cast<double>(t + 1) / o.relabelling_sweeps;
       draw_images(problem, group, beta, key + static_cast<std::uint64_t>(t) + 1, fit);
       refiner.sweep_blind(fit, 1);
-      }
+    }
     fit.evidence = refiner.judge(fit);  // images were chosen without what judges
     fit = refiner.narrowed(std::move(fit));
     if (best.pose.empty() || compare(best.evidence, fit.evidence).better_by(0)) best = std::move(fit);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cmath>
 
 #include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
@@ -12,12 +11,14 @@ namespace polar {
 
 namespace {
 
-constexpr int kPoints = 600;         // that stand for the mass: similarities err by 1/sqrt of them
-constexpr int kTurnsAtRandom = 60;   // that say what no similarity is
-constexpr float kFloor = 0.02f;      // of the highest density: what lies outside is no infinite loss
+constexpr int kPoints = 600;        // that stand for the mass: similarities err by 1/sqrt of them
+constexpr int kTurnsAtRandom = 60;  // that say what no similarity is
+constexpr float kFloor = 0.02f;     // of the highest density: what lies outside is no infinite loss
 constexpr std::uint32_t kTurnStage = 41;
 
-Pose about(const Eigen::Matrix3d& turn, const Eigen::Vector3d& centre) { return {turn, centre - turn * centre}; }
+Pose about(const Eigen::Matrix3d& turn, const Eigen::Vector3d& centre) {
+  return {turn, centre - turn * centre};
+}
 
 DensityGrid blurred(DensityGrid density, double blur) {
   density.blur(blur);
@@ -43,8 +44,10 @@ LookupPoints points_of(const DensityGrid& d) {
 }  // namespace
 
 SelfSimilarity::SelfSimilarity(DensityGrid density, double blur)
-    : density_(blurred(std::move(density), blur)), floor_(kFloor * highest(density_)),
-      volume_(density_, 0.5, static_cast<double>(2 * floor_)), points_(points_of(density_)),
+    : density_(blurred(std::move(density), blur)),
+      floor_(kFloor * highest(density_)),
+      volume_(density_, 0.5, static_cast<double>(2 * floor_)),
+      points_(points_of(density_)),
       centroid_(density_.centroid()) {
   if (planar()) centroid_.z() = 0;
   KeyedRandom random(0, 0, kTurnStage);
@@ -64,9 +67,9 @@ SelfSimilarity::SelfSimilarity(DensityGrid density, double blur)
 
 double SelfSimilarity::coarse(const Eigen::Matrix3d& turn, const Eigen::Vector3d& centre) const {
   const Pose motion = about(turn, centre);
-  const double score = static_cast<double>(
-      volume_.score(points_, turn.cast<float>(), motion.translation.cast<float>()) /
-      static_cast<float>(points_.count));
+  const double score =
+      static_cast<double>(volume_.score(points_, turn.cast<float>(), motion.translation.cast<float>()) /
+                          static_cast<float>(points_.count));
   return (score - coarse_any_) / (coarse_own_ - coarse_any_);
 }
 

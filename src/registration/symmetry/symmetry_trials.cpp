@@ -13,7 +13,8 @@ namespace polar {
 
 namespace {
 
-constexpr const char* kAnyTurn = "C7";  // what looks alike under it and is no heptagon is alike under any turn
+constexpr const char* kAnyTurn =
+    "C7";  // what looks alike under it and is no heptagon is alike under any turn
 
 struct Trial {
   std::string group;
@@ -22,7 +23,9 @@ struct Trial {
   Evidence evidence;
 };
 
-std::size_t order_of(const std::string& group) { return std::max<std::size_t>(1, rotations_of(group).size()); }
+std::size_t order_of(const std::string& group) {
+  return std::max<std::size_t>(1, rotations_of(group).size());
+}
 
 bool is_cyclic(const std::string& group) { return group[0] == 'C' && group != "C1"; }
 
@@ -39,10 +42,13 @@ void move_to(const Pose& canonical_from_template, SoftState& state) {
 class Trials {
  public:
   Trials(const Problem& problem, const RegistrationOptions& options, const SoftState& coarse)
-      : problem_(problem), options_(options.engine), o_(options_.symmetry),
+      : problem_(problem),
+        options_(options.engine),
+        o_(options_.symmetry),
         annealer_(problem, some_views(problem, static_cast<std::size_t>(o_.views)), options_.anneal,
                   {options.tilt_deg * kRadiansPerDegree, options.flip}),
-        coarse_(coarse), similarity_(coarse.density, o_.similarity_blur) {
+        coarse_(coarse),
+        similarity_(coarse.density, o_.similarity_blur) {
     // Poses of all views that take part, under the template of those that competed.
     annealer_.continue_under(stage(1), 1990, coarse_);
   }
@@ -51,8 +57,10 @@ class Trials {
   std::vector<SymmetryFrame> hinted(const std::string& asked) {
     std::vector<SymmetryFrame> out = {{"C1", {}, 1}};
     SymmetryFrame axial = best_frame(similarity_, kAnyTurn, o_.hint);
-    // In the plane the axis is known, and a resolved template must not be moved to look alike under a wrong turn.
-    if (problem_.planar()) axial.canonical_from_template = {Eigen::Matrix3d::Identity(), -similarity_.centroid()};
+    // In the plane the axis is known, and a resolved template must not be moved to look alike under a wrong
+    // turn.
+    if (problem_.planar())
+      axial.canonical_from_template = {Eigen::Matrix3d::Identity(), -similarity_.centroid()};
     const bool is_axial = problem_.planar() || axial.similarity >= o_.axial_hint;
     if (is_axial) {
       std::vector<SoftPose> pose = in_frame(axial.canonical_from_template).best;
@@ -60,7 +68,8 @@ class Trials {
       for (const AxialHarmonic& h :
            axial_harmonics(problem_, options_.evidence, pose, annealer_.which(), o_.highest_order)) {
         axial.group = "C" + std::to_string(h.order);
-        const bool strong = taken < static_cast<std::size_t>(o_.orders) && h.significance >= o_.least_significance;
+        const bool strong =
+            taken < static_cast<std::size_t>(o_.orders) && h.significance >= o_.least_significance;
         if (strong) ++taken;
         // Where no order stands out the two highest tell a body of revolution.
         const bool any_turn = taken == 0 && h.order >= o_.highest_order - 1;
@@ -150,8 +159,8 @@ bool contains(const std::string& outer, const std::string& inner) {
 std::size_t largest_free(const std::vector<Trial>& trials, const EngineOptions& options) {
   const std::size_t best = best_of(trials);
   // That a structure is symmetric at all is tested again on the exact template, so it may cost more here.
-  const double tolerance = trials[best].group == "C1" ? options.symmetry.means_standard_errors
-                                                      : options.evidence.standard_errors;
+  const double tolerance =
+      trials[best].group == "C1" ? options.symmetry.means_standard_errors : options.evidence.standard_errors;
   const auto is_free = [&](std::size_t k) {
     const Comparison c = compare(trials[best].evidence, trials[k].evidence);
     return c.better_by(-tolerance) && c.gain > -options.symmetry.means_loss;
@@ -170,7 +179,8 @@ std::size_t largest_free(const std::vector<Trial>& trials, const EngineOptions& 
 }
 
 const Trial* named(const std::vector<Trial>& trials, const std::string& group) {
-  const auto at = std::find_if(trials.begin(), trials.end(), [&](const Trial& t) { return t.group == group; });
+  const auto at =
+      std::find_if(trials.begin(), trials.end(), [&](const Trial& t) { return t.group == group; });
   return at == trials.end() ? nullptr : &*at;
 }
 
@@ -180,8 +190,8 @@ RotationGroup rotations_of(const std::string& group) {
   return group == "C1" || group.empty() ? RotationGroup{} : symmetry_rotations(group);
 }
 
-SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions& options, const SoftState& coarse,
-                               const std::string& asked, Progress& progress) {
+SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions& options,
+                               const SoftState& coarse, const std::string& asked, Progress& progress) {
   const SymmetryOptions& o = options.engine.symmetry;
   SymmetryChoice out{"C1", coarse, {}, false};
   Trials all(problem, options, coarse);
@@ -213,9 +223,8 @@ SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions
     const Comparison c = compare(plain, t.evidence);
     out.report.tried.push_back({t.group, t.similarity, c.gain, c.standard_error});
   }
-  std::stable_sort(out.report.tried.begin(), out.report.tried.end(), [](const auto& a, const auto& b) {
-    return order_of(a.group) > order_of(b.group);
-  });
+  std::stable_sort(out.report.tried.begin(), out.report.tried.end(),
+                   [](const auto& a, const auto& b) { return order_of(a.group) > order_of(b.group); });
   const Comparison c = compare(plain, chosen.evidence);
   out.group = chosen.group;
   out.state = chosen.state;
@@ -225,7 +234,8 @@ SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions
   const bool highest = out.group.substr(1) == std::to_string(o.highest_order);
   const Trial* lower = named(trials, "C" + std::to_string(o.highest_order - 1));
   out.continuous = asked.empty() && highest && lower != nullptr &&
-                   compare(trials[best_of(trials)].evidence, lower->evidence).better_by(-options.engine.evidence.standard_errors);
+                   compare(trials[best_of(trials)].evidence, lower->evidence)
+                       .better_by(-options.engine.evidence.standard_errors);
   return out;
 }
 

@@ -15,13 +15,13 @@ struct SymmetryChoice {
   std::string group = "C1";  // of the largest group that costs no more than the evidence's error
   SoftState state;           // annealed under it, in the group's own frame
   Symmetry report;
-  bool continuous = false;   // the highest order that is tried cannot be told from the next lower one
+  bool continuous = false;  // the highest order that is tried cannot be told from the next lower one
 };
 
 /// `coarse`: of a competition. Under `asked` (a group's name, or empty) that group is chosen whatever the
 /// others say; they are tried all the same, for the report.
-SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions& options, const SoftState& coarse,
-                               const std::string& asked, Progress& progress);
+SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions& options,
+                               const SoftState& coarse, const std::string& asked, Progress& progress);
 
 /// Under which group a template that has `group` is annealed; empty: none.
 RotationGroup rotations_of(const std::string& group);

@@ -2,8 +2,8 @@
 // onto one another, and the superparticle then has a hot spot that the structure has not.
 #pragma once
 
-#include "polar/registration/registration.hpp"
 #include "../data/problem.hpp"
+#include "polar/registration/registration.hpp"
 
 namespace polar {
 
