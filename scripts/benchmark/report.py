@@ -1,9 +1,21 @@
-"""docs/benchmarks.md: every study owns the lines between its two markers, everything else is left alone."""
+"""docs/results.md: every study owns the lines between its two markers, everything else is left alone."""
 import re
+import textwrap
 
 import numpy as np
 
 from .runner import grouped, mean
+
+
+COLUMNS = 108  # of the document
+
+
+def wrapped(text):
+    """Paragraphs, each filled."""
+    out = []
+    for paragraph in re.split(r"\n\s*\n", text.strip()):
+        out += [*textwrap.wrap(" ".join(paragraph.split()), COLUMNS, break_long_words=False, break_on_hyphens=False), ""]
+    return out[:-1]
 
 
 def table(head, rows):
@@ -25,15 +37,19 @@ def peak(group):
     return f"{max(values):.0f}" if values else "-"
 
 
+def lowest(group):
+    worst = min(group, key=lambda g: g["recall_10"])
+    return f"{worst['recall_10']:.3f} ({worst['object']})"
+
+
 def sweep_table(study, record):
-    objects = record["objects"]
+    several = len(record["objects"]) > 1
     rows = []
     for (series, label), group in grouped(record["points"]):
-        each = [f"{g['recall_10']:.3f}" for g in group] if len(objects) > 1 else []
-        rows.append([place(series, label), f"{mean(group, 'recall_5'):.3f}", f"{mean(group, 'recall_10'):.3f}", *each,
-                     degrees(group), f"{mean(group, 'wall_s'):.1f}", f"{mean(group, 'cpu_s'):.1f}",
-                     peak(group)])
-    return table([study.axis, "recall 5 deg", "recall 10 deg", *(objects if len(objects) > 1 else []), "median deg",
+        rows.append([place(series, label), f"{mean(group, 'recall_5'):.3f}", f"{mean(group, 'recall_10'):.3f}",
+                     *([lowest(group)] if several else []), degrees(group), f"{mean(group, 'wall_s'):.1f}",
+                     f"{mean(group, 'cpu_s'):.1f}", peak(group)])
+    return table([study.axis, "recall 5 deg", "10 deg", *(["lowest at 10 deg"] if several else []), "median deg",
                   "s", "CPU s", "peak MiB"], rows)
 
 
@@ -50,16 +66,23 @@ def angle_table(study, record):
 
 
 def peers_table(study, record):
-    rows = []
-    for g in record["points"]:
-        where = [place(g["series"], g["label"]), g["object"], g["method"]]
-        if g.get("skipped"):
-            rows.append([*where, *6 * "-", g["skipped"]])
-        else:
-            rows.append([*where, f"{g['recall_5']:.3f}", f"{g['recall_10']:.3f}", f"{g['median_deg']:.2f}",
-                         f"{g['wall_s']:.1f}", f"{g['cpu_s']:.1f}", peak([g]), g.get("note", "")])
-    return table([study.axis, "object", "method", "recall 5 deg", "recall 10 deg", "median deg", "s", "CPU s", "peak MiB",
-                  "note"], rows)
+    lines, notes = [], []
+    for where in dict.fromkeys((place(g["series"], g["label"]), g["object"]) for g in record["points"]):
+        rows = []
+        for g in record["points"]:
+            if (place(g["series"], g["label"]), g["object"]) != where:
+                continue
+            note = g.get("skipped") or g.get("note", "")
+            if note:
+                notes.append(f"{', '.join(filter(None, where))}: {g['method']}: {note}")
+            rows.append([g["method"], *6 * "-"] if g.get("skipped") else
+                        [g["method"], f"{g['recall_5']:.3f}", f"{g['recall_10']:.3f}", f"{g['median_deg']:.2f}",
+                         f"{g['wall_s']:.1f}", f"{g['cpu_s']:.1f}", peak([g])])
+        lines += [f"**{', '.join(filter(None, where))}**", "",
+                  *table(["method", "recall 5 deg", "10 deg", "median deg", "s", "CPU s", "peak MiB"], rows), ""]
+    for note in notes:
+        lines += textwrap.wrap(f"- {note}", COLUMNS, subsequent_indent="  ", break_long_words=False)
+    return lines
 
 
 def period(half_maps):
@@ -84,14 +107,15 @@ TABLES = {"sweep": sweep_table, "cdf": sweep_table, "time": sweep_table, "initia
 
 
 def section(study, record, figures, report):
-    lines = [f"## {study.title}", "", study.text, "", f"Paper: {study.paper}.", ""]
+    lines = [f"## {study.title}", "", *wrapped(study.text), "", *wrapped(f"Paper: {study.paper}."), ""]
     if record["skipped"]:
-        return lines + [f"Not run with this build: {record['skipped']}", ""]
+        return lines + [*wrapped(f"Not run with this build: {record['skipped']}"), ""]
     loads = [p["load"] for p in record["points"] if "load" in p]
     busy = f", load average {min(loads):.1f} to {max(loads):.1f} at the start of the runs" if loads else ""
     objects = f" Objects: {', '.join(record['objects'])}." if record["objects"] else ""
-    lines += [f"Level `{record['level']}`: {record['views']} views unless the table says otherwise.{objects} "
-              f"{record['version']}, {record['machine']}{busy}, {record['date']}.", ""]
+    lines += [f"    scripts/bench --level {record['level']} --study {study.name}", "",
+              *wrapped(f"{record['views']} views unless the table says otherwise.{objects} {record['version']}, "
+                       f"{record['machine']}{busy}, {record['date']}."), ""]
     lines += TABLES[study.kind](study, record)
     if study.kind == "time" and len(record["points"]) > 1:
         points = record["points"]

@@ -1,6 +1,6 @@
 // How often registration is right, where it is hard: one line a case. Two runs a case, one from nothing and
 // one from the true poses, tell a search that failed (the truth scores better) from data that cannot say
-// (it does not). Usage in docs/benchmarks.md.
+// (it does not). Usage: --help; what it is for: docs/results.md.
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>

@@ -76,6 +76,18 @@ class Report(unittest.TestCase):
         self.assertNotIn("0.500", text)
 
 
+    def test_tables_keep_to_the_columns_of_documents(self):
+        objects = [f"object_with_a_long_name {k}" for k in range(12)]
+        point = {"label": 1, "series": "a series", "recall_5": 0.25, "recall_10": 0.5, "median_deg": 2.0, "wall_s": 1000.0,
+                 "cpu_s": 1000.0, "peak_mib": 1000.0, "load": 0.0, "method": "a program, 2000 rotations", "note": "said " * 40}
+        record = {"level": "full", "views": 3, "objects": objects, "version": "polar 1", "machine": "m " * 60, "date": "d",
+                  "skipped": "", "points": [{**point, "object": o} for o in objects]}
+        for kind in ("sweep", "peers"):
+            s = study.Study("some", "Some", "section", "Text. " * 40, kind, "x", [], {}, {}, {}, {})
+            for line in report.section(s, record, Path("nowhere"), Path("nowhere.md")):
+                self.assertLessEqual(len(line), 110, line)
+
+
 class Studies(unittest.TestCase):
     def test_every_point_is_understood_by_the_program(self):
         if not POLAR.is_file():

@@ -1,5 +1,5 @@
 // How well a pose can be known at best: the Cramer-Rao bound for a known structure whose emitters are
-// not told apart (docs/method.md, "The limit").
+// not told apart (docs/measures.md, "The limit").
 #pragma once
 
 #include <Eigen/Core>
