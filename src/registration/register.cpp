@@ -124,6 +124,7 @@ class Run {
     coarse.crowded = found.crowded;
     coarse.starts = std::move(found.report);
     coarse.agreement = found.agreement;
+    coarse.warnings = std::move(found.warnings);
     coarse.weights_sha256 = model.weights_sha256;
     const Problem& problem = problems_->of(coarse.crowded);
     SoftState state = std::move(found.winner);
@@ -258,6 +259,7 @@ class Run {
     out_.starts = coarse.starts;
     out_.agreement = coarse.agreement;
     out_.weights_sha256 = coarse.weights_sha256;
+    out_.warnings.insert(out_.warnings.end(), coarse.warnings.begin(), coarse.warnings.end());
     out_.rounds = fit.rounds;
     out_.converged = fit.escaped <= options_.engine.refine.settled * static_cast<double>(problem.size());
     out_.stopped_because = std::to_string(fit.escaped) + " of " + std::to_string(problem.size()) +
