@@ -7,8 +7,8 @@ namespace polar::pipeline {
 std::vector<std::string> labelling_lines(const DiscreteSites& sites, const std::optional<Labelling>& l) {
   if (!l) return {};
   char text[200];
-  std::snprintf(text, sizeof text, "labelling    %.1f %% (%.1f to %.1f) of %d sites, from %zu particles",
-                100 * l->efficiency, 100 * l->low, 100 * l->high, l->sites, l->particles);
+  std::snprintf(text, sizeof text, "labelling    %.1f %% (%.1f to %.1f) of %d %s, from %zu particles",
+                100 * l->efficiency, 100 * l->low, 100 * l->high, l->sites, l->of.c_str(), l->particles);
   std::vector<std::string> lines = {text};
   for (const std::size_t k : hot_spots(sites)) {
     const Eigen::Vector3d& c = sites.site[k].centre_nm;
@@ -30,6 +30,7 @@ void add_labelling(nlohmann::json& summary, const DiscreteSites& sites, const st
   summary["labelling"] = {{"efficiency", l->efficiency},
                           {"low", l->low},
                           {"high", l->high},
+                          {"of", l->of},
                           {"sites", l->sites},
                           {"particles", l->particles},
                           {"labels_per_site", l->labels_per_site},

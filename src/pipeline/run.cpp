@@ -23,23 +23,28 @@
 #include "polar/pipeline/outputs.hpp"
 #include "polar/pipeline/version.hpp"
 #include "polar/registration/prepare.hpp"
+#include "polar/registration/tilt.hpp"
 #include "polar/report/page.hpp"
 #include "polar/results/labelling.hpp"
 #include "polar/results/mrc.hpp"
+#include "polar/results/registering_rows.hpp"
 #include "polar/results/result_file.hpp"
 #include "polar/results/results.hpp"
 #include "polar/results/sites.hpp"
 #include "polar/results/strangers.hpp"
 #include "polar/results/template_frame.hpp"
+#include "polar/results/units.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/table_reader.hpp"
 #include "symmetry_text.hpp"
+#include "template_file.hpp"
 
 namespace polar {
 
 namespace {
 constexpr const char* kSummary = "summary.json";
+constexpr double kLeastBackground = 1e-3;  // share of localisations that no template explains
 
 class Stopwatch {
  public:
@@ -63,6 +68,7 @@ std::string computation_text(RunConfig config) {
   name_only(config.read.pick.centres);
   name_only(config.registration.weights);
   name_only(config.initial_poses);
+  name_only(config.template_file);
   return run_config_text(config);
 }
 
@@ -71,6 +77,7 @@ std::vector<std::string> input_files(const RunConfig& config) {
   std::vector<std::string> files = config.files;
   if (!config.read.pick.centres.empty()) files.push_back(config.read.pick.centres);
   if (!config.initial_poses.empty()) files.push_back(config.initial_poses);
+  if (!config.template_file.empty()) files.push_back(config.template_file);
   if (needs_weights(config.registration)) files.push_back(weights_path(config.registration.weights));
   return files;
 }
@@ -189,7 +196,14 @@ std::string strangers_line(const std::vector<Stranger>& found) {
   return line + ": robust standard deviations of log_likelihood from the others";
 }
 
-std::vector<std::string> describe(const Results& r, const std::vector<Stranger>& unlike,
+// The prior's width, and what the poses say of it.
+std::string tilt_line(const Results& r, double given_deg) {
+  const std::optional<TiltSpread> tilt = tilt_spread(r.registration.view);
+  return "tilt         " + format("%.1f deg about either axis", tilt ? tilt->std_deg : 0) +
+         format(", %.1f were given as registration.tilt_deg", given_deg);
+}
+
+std::vector<std::string> describe(const Results& r, double tilt_deg, const std::vector<Stranger>& unlike,
                                   const std::string& directory, double seconds) {
   const Registration& g = r.registration;
   const std::size_t n = r.particles.particles.size();
@@ -213,6 +227,7 @@ std::vector<std::string> describe(const Results& r, const std::vector<Stranger>&
                     (g.other->group == "C1" ? "without symmetry" : "with " + g.other->group) +
                     format(" explains localisations kept apart by %+.4f", g.other->gain) +
                     format(" +- %.4f nat", g.other->gain_std));
+  if (tilt_deg > 0) lines.push_back(tilt_line(r, tilt_deg));
   if (r.resolution) lines.push_back(resolution_line(*r.resolution));
   lines.push_back("seconds      " + format("%.1f", seconds));
   lines.push_back("results      " + directory);
@@ -266,6 +281,8 @@ nlohmann::json summary_json(const Results& r, const std::vector<Stranger>& unlik
                                 {"held_out_gain", g.other->gain},
                                 {"held_out_gain_std", g.other->gain_std}};
   if (g.symmetry) summary["symmetry"] = pipeline::symmetry_json(*g.symmetry, r.normalisation.scale_nm);
+  if (const std::optional<TiltSpread> tilt = tilt_spread(g.view); tilt && !r.planar)
+    summary["tilt"] = {{"std_deg", tilt->std_deg}, {"particles", tilt->particles}};
   if (!g.weights_sha256.empty()) summary["weights_sha256"] = g.weights_sha256;
   if (r.resolution)
     summary["resolution"] = {{"halves", half_maps_json(r.resolution->data)},
@@ -281,19 +298,21 @@ Results compute(const RunConfig& config, const std::string& hash, Progress& prog
   r.channel_column = smlm::channel_column(config.read.channel);
   pipeline::HeldBack held_back(r.particles, config.read.channel, config.read.particle_limits, progress);
   Views views = prepare_views(r.particles, {});
+  RegistrationOptions options = config.registration;
+  if (!config.template_file.empty()) options.known = pipeline::read_template(config.template_file);
   PartOfCheckpoint all(checkpoint, "all");
   r.registration = config.initial_poses.empty()
-                       ? engine(views, config.registration, progress, all)
+                       ? engine(views, options, progress, all)
                        : register_from(views,
                                        pipeline::initial_poses(config.initial_poses, r.particles.particles,
                                                                views.normalisation, progress),
-                                       config.registration, progress);
+                                       options, progress);
   r.normalisation = std::move(views.normalisation);
   r.planar = views.planar;
   r.provenance = {program_version(), run_config_text(config), config.registration.seed, hash,
                   library_versions()};
   if (config.output.resolution == "halves" && accepted_particles(r) > 0 && !progress.cancelled())
-    r.resolution = pipeline::resolve_halves(r.particles, config.registration, progress, checkpoint, engine);
+    r.resolution = pipeline::resolve_halves(r.particles, options, progress, checkpoint, engine);
   if (progress.cancelled()) return r;
   held_back.put_back(r);
   if (config.output.frame == "own" && accepted_particles(r) > 0)
@@ -306,8 +325,27 @@ struct Products {
   smlm::LocalisationTable superparticle;
   RenderOptions render;
   DiscreteSites sites;
-  std::optional<Labelling> labelling;  // where the template is discrete
+  std::optional<Labelling> labelling;  // where the template is discrete, or has symmetric units
 };
+
+bool any(const std::vector<int>& occupied) {
+  return std::any_of(occupied.begin(), occupied.end(), [](int n) { return n > 0; });
+}
+
+// From the symmetric units where the sites cannot be told apart.
+std::optional<Labelling> unit_labelling(const Results& r, const smlm::LocalisationTable& labels,
+                                        int labels_per_unit) {
+  const FusedTemplate& fused = r.registration.fused;
+  const double scale_nm = r.normalisation.scale_nm;
+  const double background = std::max(fused.outlier_fraction, kLeastBackground) * fused.outlier_density /
+                            std::pow(scale_nm, r.planar ? 2 : 3);
+  const UnitOccupancy units =
+      occupied_units(labels, template_sites(r), scale_nm * r.registration.symmetry->unit, background);
+  if (!any(units.occupied)) return std::nullopt;
+  Labelling l = labelling_efficiency(units.occupied, units.units, labels_per_unit);
+  l.of = "symmetric units";
+  return l;
+}
 
 Products products_of(const Results& r, const RunConfig& config) {
   Products p;
@@ -315,10 +353,14 @@ Products products_of(const Results& r, const RunConfig& config) {
   p.render = calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm);
   p.render.voxel_nm = config.output.voxel_nm;
   p.render.channel_column = r.channel_column;
-  p.sites = find_sites(p.superparticle, p.render);
-  const bool counted =
-      std::any_of(p.sites.occupied.begin(), p.sites.occupied.end(), [](int n) { return n > 0; });
-  if (counted)
+  // Labels of the channels that are carried along have no place in the template.
+  smlm::LocalisationTable registering;
+  if (!r.channel_column.empty()) registering = registering_rows(p.superparticle, config.read.channel);
+  const smlm::LocalisationTable& labels = r.channel_column.empty() ? p.superparticle : registering;
+  p.sites = find_sites(labels, p.render);
+  if (p.sites.site.empty() && r.registration.symmetry)
+    p.labelling = unit_labelling(r, labels, config.output.labels_per_site);
+  else if (any(p.sites.occupied))
     p.labelling = labelling_efficiency(p.sites.occupied, static_cast<int>(p.sites.site.size()),
                                        config.output.labels_per_site);
   return p;
@@ -415,7 +457,7 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   const std::vector<std::string> written = write(r, products, config, directory, progress);
   const double seconds = watch.seconds();
   const std::vector<Stranger> unlike = strangers(pose_rows(r));
-  std::vector<std::string> lines = describe(r, unlike, config.output.directory, seconds);
+  std::vector<std::string> lines = describe(r, config.registration.tilt_deg, unlike, config.output.directory, seconds);
   const std::vector<std::string> labels = pipeline::labelling_lines(products.sites, products.labelling);
   lines.insert(lines.end() - 2, labels.begin(), labels.end());
   nlohmann::json summary = summary_json(r, unlike, lines, written, seconds);

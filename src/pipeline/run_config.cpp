@@ -66,6 +66,7 @@ void fields(Visitor& v, RunConfig& c) {
     s.field("flip", o.flip);
     s.field("weights", o.weights);
     s.field("initial_poses", c.initial_poses);
+    s.field("template", c.template_file);
     s.section("latent", [&](auto& latent) {
       latent.field("template", o.latent.template_kind);
       latent.field("noise", o.latent.noise);
@@ -112,6 +113,18 @@ void check_input(const smlm::ReadOptions& options, std::vector<std::string>& fau
   for (const std::string& v : violations(options)) faults.push_back("input." + v);
 }
 
+void check_template(const RunConfig& c, std::vector<std::string>& faults) {
+  const bool asked = wants(c.registration, "template");
+  if (asked && c.template_file.empty())
+    faults.emplace_back("registration.starts holds template: name its file as registration.template");
+  if (!asked && !c.template_file.empty())
+    faults.emplace_back("registration.template has no effect: add template to registration.starts");
+  if (asked && c.registration.method != "likelihood")
+    faults.emplace_back("registration.starts: template needs registration.method: likelihood");
+  if (asked && !c.initial_poses.empty())
+    faults.emplace_back("registration.template has no effect beside registration.initial_poses: give one of them");
+}
+
 void check(const RunConfig& c, const std::string& path) {
   std::vector<std::string> faults;
   if (c.files.empty()) faults.emplace_back("input.files is missing: list the localisation tables");
@@ -119,6 +132,7 @@ void check(const RunConfig& c, const std::string& path) {
   for (const std::string& v : violations(c.registration)) faults.push_back(v);
   if (!c.initial_poses.empty() && c.registration.method != "likelihood")
     faults.emplace_back("registration.initial_poses needs registration.method: likelihood");
+  check_template(c, faults);
   check_formats(c.output.formats, faults);
   if (c.output.resolution != "none" && c.output.resolution != "halves")
     faults.push_back("output.resolution is '" + c.output.resolution + "', expected none or halves");
@@ -148,6 +162,8 @@ RunConfig pipeline::run_config_of(const Node& root, const std::string& where, co
     config.registration.weights = pipeline::resolve_path(config.registration.weights, folder);
   if (!config.initial_poses.empty())
     config.initial_poses = pipeline::resolve_path(config.initial_poses, folder);
+  if (!config.template_file.empty())
+    config.template_file = pipeline::resolve_path(config.template_file, folder);
   config.files = pipeline::expand_files(config.files, folder, &config.patterns);
   config.output.directory = pipeline::resolve_path(config.output.directory, folder);
   return config;

@@ -24,10 +24,10 @@ void check_symmetry(const RegistrationOptions& options, std::vector<std::string>
 std::vector<std::string> violations(const RegistrationOptions& options) {
   std::vector<std::string> faults;
   if (options.starts.empty())
-    faults.push_back("registration.starts: at least one of polar, random, imaged is needed");
+    faults.push_back("registration.starts: at least one of polar, random, imaged, template is needed");
   for (const std::string& s : options.starts)
-    if (s != "polar" && s != "random" && s != "imaged")
-      faults.push_back("registration.starts: '" + s + "' is none of polar, random, imaged");
+    if (s != "polar" && s != "random" && s != "imaged" && s != "template")
+      faults.push_back("registration.starts: '" + s + "' is none of polar, random, imaged, template");
   if (std::set<std::string>(options.starts.begin(), options.starts.end()).size() != options.starts.size())
     faults.push_back("registration.starts: a start is named twice");
   if (options.search != "fast" && options.search != "exhaustive")

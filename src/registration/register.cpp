@@ -128,6 +128,7 @@ class Run {
     coarse.crowded = found.crowded;
     coarse.starts = std::move(found.report);
     coarse.agreement = found.agreement;
+    coarse.warnings = std::move(found.warnings);
     coarse.weights_sha256 = model.weights_sha256;
     const Problem& problem = problems_->of(coarse.crowded);
     SoftState state = std::move(found.winner);
@@ -234,7 +235,8 @@ class Run {
     Refiner::AgainstCloud sum, mean;
     std::vector<double> count(fit.pose.size(), 0.0);
     sum.structure.assign(count.size(), 0.0), sum.cloud.assign(count.size(), 0.0);
-    // A template of hot spots asks for less noise than there is, and would then judge by blinks it has fitted.
+    // A template of hot spots asks for less noise than there is, and would then judge by blinks it has
+    // fitted.
     NoiseModel splitting = fit.noise;
     splitting.lateral_factor = std::max(1.0, splitting.lateral_factor);
     splitting.axial_factor = std::max(1.0, splitting.axial_factor);
@@ -251,7 +253,7 @@ class Run {
       mean = sum;
       for (std::size_t i = 0; i < count.size(); ++i)
         mean.structure[i] /= count[i], mean.cloud[i] /= count[i];  // not a number where nothing judged
-      if (over_cloud(mean.cloud, mean.structure, o).better_by(2 * o.cloud_standard_errors))
+      if (over_cloud(mean.cloud, mean.structure, o).better_by(1.2 * o.cloud_standard_errors))
         break;  // beyond doubt
     }
     return mean;
@@ -274,6 +276,7 @@ class Run {
     out_.starts = coarse.starts;
     out_.agreement = coarse.agreement;
     out_.weights_sha256 = coarse.weights_sha256;
+    out_.warnings.insert(out_.warnings.end(), coarse.warnings.begin(), coarse.warnings.end());
     out_.rounds = fit.rounds;
     out_.converged = fit.escaped <= options_.engine.refine.settled * static_cast<double>(problem.size());
     out_.stopped_because = std::to_string(fit.escaped) + " of " + std::to_string(problem.size()) +

@@ -23,6 +23,7 @@ struct CoarseState {
   std::vector<StartReport> starts;
   double agreement = 0;
   std::string weights_sha256;
+  std::vector<std::string> warnings;
 };
 
 /// And when the exact template is.
@@ -65,10 +66,10 @@ void fields(Archive& archive, StartReport& value) {
 }
 template <class Archive>
 void fields(Archive& archive, CoarseState& value) {
-  auto& [pose, crowded, group, continuous, symmetry, starts, agreement, weights_sha256] = value;
+  auto& [pose, crowded, group, continuous, symmetry, starts, agreement, weights_sha256, warnings] = value;
   bool has = symmetry.has_value();
   Symmetry known = symmetry.value_or(Symmetry{});
-  archive(pose, crowded, group, continuous, has, known, starts, agreement, weights_sha256);
+  archive(pose, crowded, group, continuous, has, known, starts, agreement, weights_sha256, warnings);
   if (has) symmetry = known;
 }
 template <class Archive>

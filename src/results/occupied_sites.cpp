@@ -26,7 +26,7 @@ Shares fitted(const Eigen::MatrixXd& density, double background, Eigen::VectorXd
 }
 }  // namespace
 
-std::vector<std::size_t> occupied_sites(const Eigen::MatrixXd& density, double background) {
+std::vector<std::size_t> occupied_sites(const Eigen::MatrixXd& density, double background, double odds) {
   const auto n = static_cast<double>(density.rows());
   const Eigen::Index sites = density.cols();
   Shares now = fitted(density, background, Eigen::VectorXd::Constant(sites, 1.0 / double(sites)), kSteps);
@@ -41,7 +41,7 @@ std::vector<std::size_t> occupied_sites(const Eigen::MatrixXd& density, double b
     Eigen::VectorXd without = now.share;
     without[k] = 0;
     const Shares fewer = fitted(density, background, without, kStepsWithout);
-    if (fewer.log_likelihood > now.log_likelihood - kWorth)
+    if (fewer.log_likelihood > now.log_likelihood - (kWorth - odds))
       now = fewer;
     else
       kept.push_back(static_cast<std::size_t>(k));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "polar/registration/tilt.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
@@ -224,6 +225,10 @@ void write_run(File& file, const Results& r) {
   file.write("/run/starts/gain_std", gain_std);
   file.write("/run/starts/won", won);
   file.write_attribute("/run/starts", "agreement", g.agreement);
+  if (const std::optional<TiltSpread> tilt = tilt_spread(g.view); tilt && !r.planar) {
+    file.write_attribute("/run", "tilt_std_deg", tilt->std_deg);
+    file.write_attribute("/run", "tilt_particles", static_cast<std::uint64_t>(tilt->particles));
+  }
   const double scale_nm = r.normalisation.scale_nm;
   file.make_group("/run/calibration");
   file.write_string_attribute("/run/calibration", "meaning",

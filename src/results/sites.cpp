@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "csv_line.hpp"
+#include "emitter.hpp"
 #include "occupied_sites.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/core/median.hpp"
@@ -20,7 +21,6 @@ constexpr std::size_t kMostSites = 128;
 constexpr std::size_t kMostLocalisations = 20000;  // that positions are refined from
 constexpr int kMostSteps = 100;
 constexpr double kStill_nm = 1e-3;  // a step that changes every centre and width by less ends the refinement
-constexpr double kReach = 6;        // standard deviations from a site, beyond which nothing belongs to it
 constexpr double kLeastBackground = 1e-3;
 constexpr double kApart = 3;              // standard deviations between sites that are told apart
 constexpr double kMostBackground = 0.35;  // share of localisations at no site of a discrete template
@@ -30,22 +30,9 @@ constexpr std::uint32_t kSampleStage = 0x84;
 
 using Table = smlm::LocalisationTable;
 
-Eigen::Matrix3d covariance(const Table& t, std::size_t row) {
-  const smlm::Covariance& c = t.covariance_nm2[row];
-  Eigen::Matrix3d m;
-  m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
-      double(c[4]), double(c[5]);
-  return m;
-}
-
-double sigma_nm(const Table& t, std::size_t row) {
-  const smlm::Covariance& c = t.covariance_nm2[row];
-  return std::sqrt(t.planar ? double(c[0] + c[3]) / 2 : double(c[0] + c[3] + c[5]) / 3);
-}
-
 double median_sigma_nm(const Table& t) {
   std::vector<double> sigma(t.size());
-  for (std::size_t i = 0; i < t.size(); ++i) sigma[i] = sigma_nm(t, i);
+  for (std::size_t i = 0; i < t.size(); ++i) sigma[i] = results::sigma_nm(t, i);
   return upper_median(std::move(sigma));
 }
 
@@ -85,37 +72,14 @@ struct Model {
   int dimensions() const { return planar ? 2 : 3; }
 };
 
-// Density of a localisation at a site, and what it says of the emitter's own place: mean and covariance.
-struct Emitter {
-  double density = 0;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  double variance = 0;  // trace
-};
-
-template <int D>
-Emitter emitter(const Eigen::Matrix3d& c3, const Eigen::Vector3d& x3, const Site& s) {
-  using Matrix = Eigen::Matrix<double, D, D>;
-  using Vector = Eigen::Matrix<double, D, 1>;
-  const Matrix c = c3.topLeftCorner<D, D>();
-  const double w2 = s.width_nm * s.width_nm;
-  if ((x3 - s.centre_nm).template head<D>().squaredNorm() > kReach * kReach * (c.trace() + w2)) return {};
-  const Matrix total = c + w2 * Matrix::Identity(), inverse = total.inverse();
-  const Vector mu = s.centre_nm.head<D>(), d = x3.head<D>() - mu, pull = inverse * d;
-  Emitter e;
-  e.density = std::exp(-0.5 * d.dot(pull)) / std::sqrt(std::pow(2 * kPi, D) * total.determinant());
-  e.mean.head<D>() = mu + w2 * pull;
-  e.variance = D * w2 - w2 * w2 * inverse.trace();
-  return e;
-}
-
-Emitter emitter(const Model& m, const Eigen::Matrix3d& c, const Eigen::Vector3d& x, std::size_t k) {
-  return m.planar ? emitter<2>(c, x, m.site[k]) : emitter<3>(c, x, m.site[k]);
+results::Emitter emitter(const Model& m, const Eigen::Matrix3d& c, const Eigen::Vector3d& x, std::size_t k) {
+  return results::emitter(m.planar, c, x, m.site[k]);
 }
 
 // Probability of every site, and at the end of the background, for one localisation.
 std::vector<double> belongs_to(const Model& m, const Table& t, std::size_t row,
-                               std::vector<Emitter>& emitters) {
-  const Eigen::Matrix3d c = covariance(t, row);
+                               std::vector<results::Emitter>& emitters) {
+  const Eigen::Matrix3d c = results::covariance(t, row);
   const Eigen::Vector3d x(t.position_nm[row].data());
   std::vector<double> p(m.site.size() + 1);
   double sum = p.back() = m.background_share * m.background_density;
@@ -150,7 +114,7 @@ double step(Model& m, const Table& t, const std::vector<std::uint32_t>& rows) {
   const std::size_t n = m.site.size();
   const Sums all = ordered_sum(rows.size(), kBlock, Sums(n), [&](std::size_t begin, std::size_t end) {
     Sums s(n);
-    std::vector<Emitter> emitters(n);
+    std::vector<results::Emitter> emitters(n);
     for (std::size_t i = begin; i < end; ++i) {
       const std::vector<double> p = belongs_to(m, t, rows[i], emitters);
       s.background += p.back();
@@ -230,18 +194,14 @@ Model fit(const Table& t, const std::vector<Eigen::Vector3d>& start, const Volum
 
 // Which sites the particles show.
 void count_occupied(const Model& m, const Table& t, DiscreteSites& out) {
-  std::vector<std::vector<std::size_t>> rows(t.particle_names.size());
-  for (std::size_t row = 0; row < t.size(); ++row)
-    if (t.particle[row] >= 0) rows[static_cast<std::size_t>(t.particle[row])].push_back(row);
-  rows.erase(std::remove_if(rows.begin(), rows.end(), [](const auto& own) { return own.empty(); }),
-             rows.end());
   const double background = std::max(m.background_share, kLeastBackground) * m.background_density;
+  const std::vector<std::vector<std::size_t>> rows = results::rows_of_particles(t);
   for (const auto& own : rows) {
     Eigen::MatrixXd density(static_cast<Eigen::Index>(own.size()), static_cast<Eigen::Index>(m.site.size()));
     for (std::size_t i = 0; i < own.size(); ++i)
       for (std::size_t k = 0; k < m.site.size(); ++k)
         density(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-            emitter(m, covariance(t, own[i]), Eigen::Vector3d(t.position_nm[own[i]].data()), k).density;
+            emitter(m, results::covariance(t, own[i]), Eigen::Vector3d(t.position_nm[own[i]].data()), k).density;
     int n = 0;
     for (const std::size_t k : results::occupied_sites(density, background)) {
       ++n;

@@ -1,5 +1,6 @@
 """Two colours: the rings decide the poses, the centre is carried along, in one table, in two, or later."""
 import csv
+import json
 import random
 import unittest
 
@@ -72,6 +73,8 @@ class Channels(PolarCase):
         self.write("rings.yaml", "input: {files: rings.csv}\n" + more)
         self.ok("run", "rings.yaml", "--output", "rings_only")
         self.assertEqual(self.poses("results"), self.poses("rings_only"))
+        self.assertEqual(self.labelling("results"), self.labelling("rings_only"))
+        self.assertGreater(self.labelling("results")["sites"], 0)
         # One file a channel says the same.
         self.table("centres.csv", self.centres)
         self.write("files.yaml", "input: {files: [rings.csv, centres.csv], channel: {per_file: true}}\n" + more)
@@ -83,6 +86,9 @@ class Channels(PolarCase):
         self.ok("apply", "rings_only", "centres.csv", "--output", "applied")
         self.assertEqual([row["x [nm]"] for row in self.aligned("applied")], [row["x [nm]"] for row in second])
         self.assertTrue((self.folder / "results/preview.png").exists())
+
+    def labelling(self, folder):
+        return json.loads((self.folder / folder / "summary.json").read_text())["labelling"]
 
     def poses(self, folder):
         names = ("particle", "qw", "qx", "qy", "qz", "tx_nm", "ty_nm", "tz_nm", "accepted")

@@ -366,6 +366,44 @@ class Resume(PolarCase):
         return process.wait() == 128 + number and self.checkpoints()
 
 
+class KnownBeforehand(PolarCase):
+    """Poses or a template that are known before the run."""
+    def setUp(self):
+        super().setUp()
+        self.data = self.simulate("simulation: {particles: 12, blinks_mean: 8, sigma_xy_nm: [2, 4], cramer_rao: false}")
+        self.config = self.run_config(more="registration: {symmetry: D8, starts: [imaged]}\n"
+                                      "output: {formats: [hdf5, csv, sites], preview: false, report: false}\n"
+                                      "expert: {proposals: {most_proposals: 0}, verdict: {draws: 1}}\n")
+
+    def test_initial_poses(self):
+        poses = self.data / "poses.csv"
+        self.ok("run", self.config, "--set", f"registration.initial_poses={poses}")
+        self.assertGreaterEqual(self.recall("results", poses, 10)[0], 0.9)
+        lines = poses.read_text().splitlines(keepends=True)
+        fewer = self.write("fewer.csv", "".join(lines[:-2]))
+        done = self.polar("run", self.config, "--set", f"registration.initial_poses={fewer}", "--output", "again")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("has no pose of 2 particles", done.stderr)
+        self.assertGreaterEqual(self.recall("again", poses, 10)[0], 0.8)
+        self.fails(4, "No such file", "run", self.config, "--set", "registration.initial_poses=none.csv",
+                   "--output", "third")
+
+    def test_template(self):
+        sites = self.data / "sites.csv"
+        known = ("--set", "registration.starts=[template]", "--set")
+        done = self.polar("run", self.config, *known, f"registration.template={sites}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("could be the template's own", done.stderr)
+        self.assertGreaterEqual(self.recall("results", self.data / "poses.csv", 10)[0], 0.9)
+        self.ok("run", self.config, *known, f"registration.template={self.folder / 'results/results.h5'}",
+                "--output", "again")
+        self.assertGreaterEqual(self.recall("again", self.data / "poses.csv", 10)[0], 0.9)
+        self.fails(2, "name its file as registration.template", "run", self.config, *known[:2])
+        self.fails(2, "has no effect: add template", "run", self.config, "--set", f"registration.template={sites}")
+        damaged = self.write("template.h5", "nothing of the kind")
+        self.fails(3, "template.h5", "run", self.config, *known, f"registration.template={damaged}", "--output", "third")
+
+
 class Recall(PolarCase):
     def test_pores_in_any_orientation(self):
         data = self.simulate(PORES)
@@ -393,8 +431,9 @@ class Recall(PolarCase):
         self.assertGreaterEqual(self.recall("results", data / "poses.csv", 10)[0], 0.9)
 
     def test_planar_particles_that_lack_many_of_their_labels(self):
-        # Their centres stray by a third of the radius. Where half is missing they may be refused, never be wrong.
-        for labelled, expected, may_refuse in ((0.6, 0.9, False), (0.5, 0.75, True)):
+        # Their centres stray by a third of the radius, and one particle in six may be lost (a known loss,
+        # docs/decisions/0001). Where half is missing they may be refused.
+        for labelled, expected, may_refuse in ((0.8, 0.95, False), (0.6, 0.65, False), (0.5, 0.65, True)):
             with self.subTest(labelled=labelled):
                 name = f"labelled_{round(100 * labelled)}"
                 data = self.simulate(

@@ -123,7 +123,7 @@ class Report(PolarCase):
         self.fails(5, "no particle could be registered", *run)  # given again: not in its own way
 
     def test_page_of_planar_data_and_written_anew(self):
-        self.simulate(SMALL.replace("tilt_std_deg: 10", "planar: true"))
+        self.simulate(SMALL.replace("tilt_std_deg: 10", "planar: true").replace("particles: 10", "particles: 24"))
         self.ok("run", self.run_config(more=QUICK % ""))
         page = self.folder / "results" / "report.html"
         self.assertEqual(self.look_at_all(page)["turntable"]["state"], "absent")

@@ -43,6 +43,8 @@ struct RunConfig {
   /// poses.csv with poses to start from (template_from_view), instead of registration.starts; empty: none are
   /// known.
   std::string initial_poses;
+  /// Sites, or an earlier results.h5: the structure of the start `template`; empty: none is known.
+  std::string template_file;
   OutputOptions output;
 };
 

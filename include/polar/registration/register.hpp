@@ -14,6 +14,12 @@
 
 namespace polar {
 
+/// A structure that is known beforehand, in its own frame.
+struct KnownTemplate {
+  Eigen::Matrix3Xd site_nm;
+  std::vector<double> weight;  // one a site
+};
+
 struct RegistrationOptions {
   std::uint64_t seed = 1;  // every random choice follows from it
   std::vector<std::string> starts = {"polar", "random", "imaged"};  // hypotheses that compete
@@ -25,6 +31,7 @@ struct RegistrationOptions {
   std::string symmetry = "auto";  // auto | none | detect | C<n>, D<n>, T, O, I: imposed on the template
   double tilt_deg = 0;            // 0: any orientation; else standard deviation of particles that lie upright
   bool flip = false;              // or upside down
+  KnownTemplate known;            // of the start `template`; no sites: none is known
   EngineOptions engine;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace polar {
@@ -9,7 +10,8 @@ namespace polar {
 struct Labelling {
   double efficiency = 0, low = 0,
          high = 0;            // probability that a place carries a label, and its 95 % interval
-  int sites = 0;              // of the template
+  int sites = 0;              // of the template, or its symmetric units
+  std::string of = "sites";   // what is counted: sites | symmetric units
   int labels_per_site = 1;    // places that are one site
   std::size_t particles = 0;  // that were counted
   int fewest = 1;             // sites that a particle needs to be among them

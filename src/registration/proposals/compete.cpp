@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../data/evidence.hpp"
+#include "known_template.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
 #include "polar_start.hpp"
@@ -20,12 +21,14 @@ struct Hypothesis {
   Evidence evidence;
   bool crowded = false;
   StartReport report;
+  bool of_known = false;  // begun under the known template, or grown again from such a one
 };
 
 class Contest {
  public:
   Contest(const Problems& problems, const RegistrationOptions& options)
       : options_(options),
+        problem_(problems.plain),
         which_(some_views(problems.plain, static_cast<std::size_t>(options.engine.proposals.views))),
         prior_{options.tilt_deg * kRadiansPerDegree, options.flip},
         plain_(problems.plain, which_, options.engine.anneal, prior_),
@@ -53,7 +56,8 @@ class Contest {
 
   Hypothesis random(int k) {
     const AnnealOptions& o = options_.engine.anneal;
-    Hypothesis h{SoftState(plain_.frame()), {}, k % 2 == 0 && k > 0, {}};  // the second of two is thinned
+    Hypothesis h{
+        SoftState(plain_.frame()), {}, k % 2 == 0 && k > 0, {}, false};  // the second of two is thinned
     h.report.name = "random " + std::to_string(k);
     h.state = of(h.crowded).random_start(static_cast<std::uint64_t>(k));
     of(h.crowded).anneal(
@@ -64,16 +68,29 @@ class Contest {
 
   Hypothesis from(const std::string& name, const std::vector<SoftPose>& pose, const std::vector<int>& posed,
                   std::uint64_t key) {
-    Hypothesis h{SoftState(plain_.frame()), {}, false, {}};
+    Hypothesis h{SoftState(plain_.frame()), {}, false, {}, false};
     h.report.name = name;
     h.state = plain_.from_poses(pose, posed, options_.engine.proposals.regrown_width);
     plain_.anneal(growth(), key, h.state);
     return h;
   }
 
+  Hypothesis known() {
+    Hypothesis h{
+        known_state(options_.known, plain_.frame(), problem_, options_.engine.proposals.regrown_width,
+                    options_.engine.anneal.first_outlier_fraction),
+        {},
+        false,
+        {},
+        true};
+    h.report.name = "template";
+    plain_.continue_under(growth(), 902, h.state);
+    return h;
+  }
+
   Hypothesis regrown(int k) {
     const Hypothesis& from = entered_[best_];
-    Hypothesis h{from.state, {}, from.crowded, {}};
+    Hypothesis h{from.state, {}, from.crowded, {}, from.of_known};
     h.report.name = "regrown " + std::to_string(k);
     const auto some = static_cast<std::size_t>(
         std::ceil(options_.engine.proposals.regrown_share * static_cast<double>(which_.size())));
@@ -105,6 +122,13 @@ class Contest {
     Competition out{entered_[best_].state, entered_[best_].crowded, {}, agreement(), true};
     entered_[best_].report.won = true;
     for (const Hypothesis& h : entered_) out.report.push_back(h.report);
+    if (wants(options_, "template"))
+      out.warnings.push_back(
+          entered_[best_].of_known
+              ? warning_of(likeness_to_known(problem_, which_, options_))
+              : "registration.template: start '" + entered_[best_].report.name +
+                    "' explains localisations kept apart better; the average does not come "
+                    "from the template");
     return out;
   }
   const SoftAnnealer& of(bool crowded) const { return crowded ? thinned_ : plain_; }
@@ -125,6 +149,7 @@ class Contest {
   }
 
   const RegistrationOptions& options_;
+  const Problem& problem_;
   std::vector<int> which_;
   PosePrior prior_;
   SoftAnnealer plain_, thinned_;
@@ -158,7 +183,7 @@ Competition compete(const Problems& problems, const Autoencoder* model, const Re
                     Progress& progress) {
   const ProposalOptions& o = options.engine.proposals;
   Contest contest(problems, options);
-  const int total = o.most_starts + o.most_proposals;
+  const int total = o.most_starts + o.most_proposals + (wants(options, "template") ? 1 : 0);
   int done = 0;
   const auto step = [&](Hypothesis h) {
     contest.add(std::move(h));
@@ -175,6 +200,7 @@ Competition compete(const Problems& problems, const Autoencoder* model, const Re
     const std::vector<int> few = contest.some(static_cast<std::size_t>(o.polar_views));
     return step(contest.from("polar", polar_poses(problems.plain, few, *model, options), few, 901));
   };
+  if (wants(options, "template") && !step(contest.known())) return cancelled;
   if (!wants(options, "random")) {
     if (!posed_starts()) return cancelled;
   } else {

@@ -19,6 +19,7 @@ struct Competition {
   std::vector<StartReport> report;
   double agreement = 0;
   bool finished = false;  // false: cancelled
+  std::vector<std::string> warnings = {};
 };
 
 /// `model`: of the start `polar`; null where it is not wanted.
