@@ -101,16 +101,12 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
     const GridScores scores = score_grid(volumes, search_view(views.view[i], axes[i], noise, classes, few),
                                          grid, turn, options.grid);
     const KernelLocalisations localisations = kernel_localisations(views.view[i], axes[i], noise, few);
-    const RefinedPose current = uphill(localisations, poses[i].inverse(), options.evaluations);
+    const auto refined = [&](const Pose& start) {
+      return uphill(localisations, start.inverse(), options.evaluations);
+    };
     std::vector<RefinedPose> candidates;
-    double best = current.log_likelihood;
-    for (const Pose& basin : basins_modulo(scores, grid, turn, options)) {
-      candidates.push_back(uphill(localisations, basin.inverse(), options.first_evaluations));
-      best = std::max(best, candidates.back().log_likelihood);
-    }
-    for (RefinedPose& c : candidates)  // the others are out of the race
-      if (c.log_likelihood > best - 2 * options.doubt)
-        c = uphill(localisations, c.view_from_template, options.evaluations - options.first_evaluations);
+    for (const Pose& basin : basins_modulo(scores, grid, turn, options)) candidates.push_back(refined(basin));
+    const RefinedPose current = refined(poses[i]);
     outcome[i] = best_of(candidates, current, options, few.size());
     const bool clear = outcome[i].margin * static_cast<double>(few.size()) >= options.doubt;
     const auto many = first_of(subset[i], options.most_judging);

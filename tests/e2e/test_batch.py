@@ -28,7 +28,7 @@ class Batch(PolarCase):
     def setUp(self):
         super().setUp()
         # As few particles as still hold a structure: what is tested is the batch.
-        simulation = self.write("simulation.yaml", "simulation: {particles: 6, orientation: in_plane, tilt_std_deg: 5,"
+        simulation = self.write("simulation.yaml", "simulation: {particles: 12, orientation: in_plane, tilt_std_deg: 5,"
                                 " blinks: poisson, blinks_mean: 6, sigma_xy_nm: 3, cramer_rao: false}\n")
         for labelled in (50, 70, 90):
             for cell in range(2):

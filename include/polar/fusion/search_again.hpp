@@ -17,7 +17,6 @@ namespace polar {
 struct SearchAgainOptions {
   int basins = 8;                // M of the paper
   int evaluations = 8;           // of the refinement of a basin
-  int first_evaluations = 3;     // of them before those far behind are left as they are
   int most_localisations = 160;  // of a view that the search looks at: enough to find basins
   // Basins whose log likelihoods differ by less over so few localisations are told apart by more of them.
   double doubt = 8;
