@@ -64,6 +64,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("similarity_blur", o.symmetry.similarity_blur);
     s.field("hint", o.symmetry.hint);
     s.field("polyhedral_hint", o.symmetry.polyhedral_hint);
+    s.field("axial_hint", o.symmetry.axial_hint);
     s.field("highest_order", o.symmetry.highest_order);
     s.field("orders", o.symmetry.orders);
     s.field("least_significance", o.symmetry.least_significance);
@@ -72,6 +73,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("first_width", o.symmetry.first_width);
     s.field("first_beta", o.symmetry.first_beta);
     s.field("narrowing", o.symmetry.narrowing);
+    s.field("means_standard_errors", o.symmetry.means_standard_errors);
     s.field("means_loss", o.symmetry.means_loss);
     s.field("relabellings", o.symmetry.relabellings);
     s.field("relabelling_sweeps", o.symmetry.relabelling_sweeps);

@@ -67,16 +67,14 @@ struct SymmetryOptions {
   double similarity_blur = 0.08;  // of the density whose turns are compared; measured
   double hint = 0.5;  // self-similarity from which a group is worth trying (1 the same, 0 any); chosen
   double polyhedral_hint = 0.15;  // the same of T, O and I, whose few sites a coarse template blurs; chosen
-  double axial_hint =
-      0.4;  // self-similarity under any turn about an axis, from which harmonics tell; measured
+  double axial_hint = 0.4;  // the same of any turn about an axis, from which harmonics tell; measured
   int highest_order = 12;         // of an axis tried; chosen
   int orders = 3;                 // of an axis, most significant first, that are tried; measured
   double least_significance = 1;  // of a harmonic, standard errors over views; chosen
   int views = 200;                // that take part; measured
   int sweeps = 10;                // of a trial; measured
   double first_width = 0.09, first_beta = 0.35, narrowing = 0.6;  // of a trial; measured
-  double means_standard_errors =
-      4;                       // that a group may cost against none as a means, before it is tested; chosen
+  double means_standard_errors = 4;  // that a group may cost as a means, before it is tested; chosen
   double means_loss = 0.25;    // and nat a localisation that it may cost at all; measured: pores .05 to .15
   int relabellings = 2;        // tries to tell the images of a unit apart; chosen
   int relabelling_sweeps = 8;  // chosen
