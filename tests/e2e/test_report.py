@@ -9,7 +9,7 @@ from harness import HEADER, PolarCase
 
 MOST_BYTES = 5_000_000
 # Upright particles that the start `imaged` finds at once.
-SMALL = "simulation: {particles: 10, blinks_mean: 3, orientation: in_plane, tilt_std_deg: 10, cramer_rao: false}"
+SMALL = "simulation: {particles: 24, blinks_mean: 3, orientation: in_plane, tilt_std_deg: 10, cramer_rao: false}"
 QUICK = "registration: {starts: [imaged]%s}\n"
 
 # Every figure: whether it is there, what it shows, and whether it stays within the window.
@@ -86,7 +86,7 @@ class Report(PolarCase):
             self.assertEqual(figures[present]["state"], "present", present)
         with self.subTest("the table searches and sorts"):
             rows = "document.querySelectorAll('#particle-table tbody tr').length"
-            self.assertEqual(self.browser.value(rows), 10)
+            self.assertEqual(self.browser.value(rows), 24)
             self.browser.value("(() => { const s = document.querySelector('input[type=search]'); s.value = 'no such particle';"
                                "s.dispatchEvent(new Event('input')) })()")
             self.assertEqual(self.browser.value(rows), 0)
@@ -123,7 +123,7 @@ class Report(PolarCase):
         self.fails(5, "no particle could be registered", *run)  # given again: not in its own way
 
     def test_page_of_planar_data_and_written_anew(self):
-        self.simulate(SMALL.replace("tilt_std_deg: 10", "planar: true").replace("particles: 10", "particles: 24"))
+        self.simulate(SMALL.replace("tilt_std_deg: 10", "planar: true"))
         self.ok("run", self.run_config(more=QUICK % ""))
         page = self.folder / "results" / "report.html"
         self.assertEqual(self.look_at_all(page)["turntable"]["state"], "absent")

@@ -31,7 +31,8 @@ class Symmetry(PolarCase):
         plain_recall, plain = self.recall("plain", data / "poses.csv", 10)
         recall, report = self.recall("imposed", data / "poses.csv", 10)
         self.assertGreaterEqual(recall, plain_recall - 0.01)
-        self.assertLessEqual(report["median_pair_deg"], plain["median_pair_deg"])
+        # To a fiftieth: each median is over the particles that its run accepts.
+        self.assertLessEqual(report["median_pair_deg"], 1.02 * plain["median_pair_deg"])
 
     def test_planar_rings_have_turns_in_the_plane_only(self):
         self.simulate("structure: {kind: ring}\n"
