@@ -93,7 +93,7 @@ SearchView search_view(const View& view, const Eigen::Vector3f& axis, const Nois
                  out.part.end());
   for (SearchView::Part& part : out.part)
     for (auto* a : {&part.x, &part.y, &part.z})
-      a->resize((a->size() + kernel::kBlock - 1) / kernel::kBlock * kernel::kBlock, a->back());
+      a->resize((a->size() + kernel::kLookupPad - 1) / kernel::kLookupPad * kernel::kLookupPad, a->back());
   return out;
 }
 
@@ -120,7 +120,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
   origin_ = low - border;
   if (planar) origin_.z() = 0;
   const auto voxels = static_cast<std::size_t>(dim_[0] * dim_[1] * dim_[2]);
-  stride_ = (voxels + kernel::kBlock - 1) / kernel::kBlock * kernel::kBlock;
+  stride_ = (voxels + kernel::kLookupPad - 1) / kernel::kLookupPad * kernel::kLookupPad;
   value_.resize(stride_ * direction_.size() * classes.sigma.size() + 1);  // a look-up reads one more
 
   const auto background =
@@ -150,7 +150,7 @@ DirectionVolumes::DirectionVolumes(const Mixture& mixture, const SigmaClasses& c
       mixture_kernel().add_gaussian(density.data(), dim_, gaussian.at(at, amplitude));
     }
     lookup_kernel().quantise_log(density.data(), static_cast<int>(stride_), zero_, scale_,
-                                  value_.data() + v * stride_);
+                                 value_.data() + v * stride_);
   });
 }
 

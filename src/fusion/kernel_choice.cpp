@@ -4,32 +4,38 @@
 
 namespace polar {
 
-const kernel::MixtureKernel& mixture_kernel() {
-#if defined(__x86_64__)
+namespace {
+
+template <class Kernel>
+using Set = const Kernel& (*)();
+
+template <class Kernel>
+const Kernel& active(Set<Kernel> portable, Set<Kernel> avx2, Set<Kernel> avx512) {
   switch (active_isa()) {
     case Isa::avx512:
-      return kernel::mixture_kernel_avx512();
+      return avx512();
     case Isa::avx2:
-      return kernel::mixture_kernel_avx2();
+      return avx2();
     case Isa::portable:
       break;
   }
+  return portable();
+}
+
+}  // namespace
+
+#if defined(__x86_64__)
+#define POLAR_SETS(kernel) kernel##_portable, kernel##_avx2, kernel##_avx512
+#else
+#define POLAR_SETS(kernel) kernel##_portable, kernel##_portable, kernel##_portable
 #endif
-  return kernel::mixture_kernel_portable();
+
+const kernel::MixtureKernel& mixture_kernel() {
+  return active<kernel::MixtureKernel>(POLAR_SETS(kernel::mixture_kernel));
 }
 
 const kernel::LookupKernel& lookup_kernel() {
-#if defined(__x86_64__)
-  switch (active_isa()) {
-    case Isa::avx512:
-      return kernel::lookup_kernel_avx512();
-    case Isa::avx2:
-      return kernel::lookup_kernel_avx2();
-    case Isa::portable:
-      break;
-  }
-#endif
-  return kernel::lookup_kernel_portable();
+  return active<kernel::LookupKernel>(POLAR_SETS(kernel::lookup_kernel));
 }
 
 }  // namespace polar

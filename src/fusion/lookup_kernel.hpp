@@ -1,5 +1,5 @@
-// The inner loops of scoring by look-up. Sums are whole numbers and nothing is fused, so that every instruction
-// set gives the same bits: which mode of a posterior is drawn must not hang on the processor.
+// The inner loops of scoring by look-up. Sums are whole numbers and nothing is fused, so that every
+// instruction set gives the same bits: which mode of a posterior is drawn must not hang on the processor.
 #pragma once
 
 namespace polar::kernel {

@@ -110,6 +110,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("draws", o.verdict.draws);
     s.field("doubtful_standard_errors", o.verdict.doubtful_standard_errors);
     s.field("cloud_standard_errors", o.verdict.cloud_standard_errors);
+    s.field("enough_standard_errors", o.verdict.enough_standard_errors);
     s.field("most_gain", o.verdict.most_gain);
     s.field("least_accepted_share", o.verdict.least_accepted_share);
   });

@@ -457,7 +457,8 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   const std::vector<std::string> written = write(r, products, config, directory, progress);
   const double seconds = watch.seconds();
   const std::vector<Stranger> unlike = strangers(pose_rows(r));
-  std::vector<std::string> lines = describe(r, config.registration.tilt_deg, unlike, config.output.directory, seconds);
+  std::vector<std::string> lines =
+      describe(r, config.registration.tilt_deg, unlike, config.output.directory, seconds);
   const std::vector<std::string> labels = pipeline::labelling_lines(products.sites, products.labelling);
   lines.insert(lines.end() - 2, labels.begin(), labels.end());
   nlohmann::json summary = summary_json(r, unlike, lines, written, seconds);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine_fields.hpp"
 #include "config/fields.hpp"
 #include "config/paths.hpp"
+#include "engine_fields.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "run_config_tree.hpp"
 #include "smlm/error.hpp"
@@ -122,7 +122,8 @@ void check_template(const RunConfig& c, std::vector<std::string>& faults) {
   if (asked && c.registration.method != "likelihood")
     faults.emplace_back("registration.starts: template needs registration.method: likelihood");
   if (asked && !c.initial_poses.empty())
-    faults.emplace_back("registration.template has no effect beside registration.initial_poses: give one of them");
+    faults.emplace_back(
+        "registration.template has no effect beside registration.initial_poses: give one of them");
 }
 
 void check(const RunConfig& c, const std::string& path) {

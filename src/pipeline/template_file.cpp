@@ -25,8 +25,9 @@ KnownTemplate read_template(const std::string& path) {
   double total = 0;
   for (const double w : known.weight) total += w;
   if (known.site_nm.cols() < 2 || !known.site_nm.allFinite() || !(total > 0))
-    throw smlm::Error(smlm::Fault::input, path, "holds no template",
-                      "registration.template is a table of at least two sites (x, y, z in nm) or a results.h5");
+    throw smlm::Error(
+        smlm::Fault::input, path, "holds no template",
+        "registration.template is a table of at least two sites (x, y, z in nm) or a results.h5");
   return known;
 }
 

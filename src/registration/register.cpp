@@ -76,13 +76,6 @@ std::vector<Pose> poses_of(const std::vector<SoftPose>& soft) {
   return out;
 }
 
-std::vector<int> some_at_random(const Problem& problem, double share, int key) {
-  const std::vector<std::uint32_t> order =
-      random_order(problem.size(), KeyedRandom(problem.seed, static_cast<std::uint64_t>(key), kRegrownStage));
-  const auto n = static_cast<std::size_t>(std::ceil(share * static_cast<double>(problem.size())));
-  return {order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n)};
-}
-
 class Run {
  public:
   Run(const Views& views, const RegistrationOptions& options, Progress& progress, Checkpoint& checkpoint)
@@ -145,7 +138,7 @@ class Run {
       timed("symmetry");
     }
     const AnnealOptions& a = options_.engine.anneal;
-    const SoftAnnealer all(problem, problem.all, a, {options_.tilt_deg * kRadiansPerDegree, options_.flip});
+    const SoftAnnealer all(problem, problem.all, a, prior_of(options_));
     all.continue_under({a.last_sweeps, a.last_width, a.last_width, a.last_beta, a.last_beta, 1, false}, 4000,
                        state);
     coarse.pose = poses_of(state.best);
@@ -207,19 +200,15 @@ class Run {
   // between two labels is no place to climb from.
   Fit regrown(const Problem& problem, const Refiner& refiner, Fit fit) {
     const ProposalOptions& p = options_.engine.proposals;
-    const AnnealOptions& a = options_.engine.anneal;
-    const SoftAnnealer annealer(problem, problem.all, a,
-                                {options_.tilt_deg * kRadiansPerDegree, options_.flip});
+    const SoftAnnealer annealer(problem, problem.all, options_.engine.anneal, prior_of(options_));
     for (int k = 1, rejected = 0;
          k <= p.most_proposals && rejected < p.fine_rejected && !progress_.cancelled(); ++k) {
-      std::vector<SoftPose> pose;
-      for (const Pose& t : fit.pose) pose.push_back({t.rotation.cast<float>(), t.translation.cast<float>()});
-      SoftState state =
-          annealer.from_poses(pose, some_at_random(problem, p.regrown_share, k), p.regrown_width);
+      const std::vector<int> some =
+          share_at_random(problem.all, p.regrown_share,
+                          KeyedRandom(problem.seed, static_cast<std::uint64_t>(k), kRegrownStage));
+      SoftState state = annealer.from_poses(soft_poses_of(fit.pose), some, p.regrown_width);
       state.group = fit.group;
-      annealer.anneal(
-          {p.regrown_sweeps, p.regrown_width, a.last_width, p.regrown_beta, a.last_beta, a.narrowing, false},
-          5000 + static_cast<std::uint64_t>(k), state);
+      annealer.anneal(growth_stage(options_.engine), 5000 + static_cast<std::uint64_t>(k), state);
       Fit next = refiner.rounds(refiner.begin(poses_of(state.best), fit.noise, fit.group), progress_);
       const Comparison c = compare(fit.evidence, next.evidence);
       const bool better = c.better_by(options_.engine.evidence.standard_errors);
@@ -253,7 +242,7 @@ class Run {
       mean = sum;
       for (std::size_t i = 0; i < count.size(); ++i)
         mean.structure[i] /= count[i], mean.cloud[i] /= count[i];  // not a number where nothing judged
-      if (over_cloud(mean.cloud, mean.structure, o).better_by(1.2 * o.cloud_standard_errors))
+      if (over_cloud(mean.cloud, mean.structure, o).better_by(o.enough_standard_errors))
         break;  // beyond doubt
     }
     return mean;

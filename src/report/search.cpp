@@ -34,7 +34,8 @@ void add_starts(const RunRecord& record, Section& s) {
     errors = errors || std::isfinite(start.held_out_std);
   }
   const std::string note =
-      errors ? "Held-out log likelihood a localisation, with the standard error of its difference to the best before."
+      errors ? "Held-out log likelihood a localisation, with the standard error of its difference to the "
+               "best before."
              : "Held-out log likelihood a localisation. The record holds no standard errors: small "
                "differences may be chance.";
   s.figures.push_back({"starts", "Starts and proposals",

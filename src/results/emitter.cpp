@@ -45,7 +45,8 @@ std::vector<std::vector<std::size_t>> rows_of_particles(const smlm::Localisation
   std::vector<std::vector<std::size_t>> rows(table.particle_names.size());
   for (std::size_t row = 0; row < table.size(); ++row)
     if (table.particle[row] >= 0) rows[static_cast<std::size_t>(table.particle[row])].push_back(row);
-  rows.erase(std::remove_if(rows.begin(), rows.end(), [](const auto& own) { return own.empty(); }), rows.end());
+  rows.erase(std::remove_if(rows.begin(), rows.end(), [](const auto& own) { return own.empty(); }),
+             rows.end());
   return rows;
 }
 

@@ -4,7 +4,8 @@
 
 namespace polar {
 
-smlm::LocalisationTable registering_rows(const smlm::LocalisationTable& table, const smlm::ChannelOptions& channel) {
+smlm::LocalisationTable registering_rows(const smlm::LocalisationTable& table,
+                                         const smlm::ChannelOptions& channel) {
   const smlm::Channels channels = smlm::channels_of(table, smlm::channel_column(channel));
   const std::vector<bool> registers = smlm::registering_channels(channels, channel);
   std::vector<bool> wanted(table.size());

@@ -104,8 +104,9 @@ void write_other_template(File& file, const OtherTemplate& other, double scale_n
     for (Eigen::Index a = 0; a < 3; ++a) centre.push_back(scale_nm * other.fused.centre(a, c));
   write_with_unit(file, "/other_template/centre", centre, {k, 3}, "nm", "centres of the other average");
   const Eigen::VectorXd& weight = other.fused.weight;
-  write_with_unit(file, "/other_template/weight", std::vector<double>(weight.data(), weight.data() + weight.size()),
-                  {k}, "1", "share of each centre");
+  write_with_unit(file, "/other_template/weight",
+                  std::vector<double>(weight.data(), weight.data() + weight.size()), {k}, "1",
+                  "share of each centre");
   file.write_string_attribute("/other_template", "group", other.group);
   file.write_attribute("/other_template", "width_nm", scale_nm * other.fused.width);
   file.write_attribute("/other_template", "held_out_gain", other.gain);

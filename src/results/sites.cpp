@@ -201,7 +201,8 @@ void count_occupied(const Model& m, const Table& t, DiscreteSites& out) {
     for (std::size_t i = 0; i < own.size(); ++i)
       for (std::size_t k = 0; k < m.site.size(); ++k)
         density(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-            emitter(m, results::covariance(t, own[i]), Eigen::Vector3d(t.position_nm[own[i]].data()), k).density;
+            emitter(m, results::covariance(t, own[i]), Eigen::Vector3d(t.position_nm[own[i]].data()), k)
+                .density;
     int n = 0;
     for (const std::size_t k : results::occupied_sites(density, background)) {
       ++n;

@@ -28,8 +28,8 @@ struct BatchOutcome {
 /// kept, a run that was cut short continues, and a data set that fails, however it does, stops no other.
 /// summary.csv, conditions.csv and batch.json are written at the beginning and whenever a data set ends; they
 /// say what the folders hold. report.html shows it at the end. Call it while this process has no other
-/// thread. Throws smlm::Error (usage) for a name in `only` that is none, (io) when the output directory cannot
-/// be written.
+/// thread. Throws smlm::Error (usage) for a name in `only` that is none, (io) when the output directory
+/// cannot be written.
 BatchOutcome run_batch(const BatchConfig& config, const BatchFlags& flags, Progress& progress,
                        const Engine& engine = default_engine());
 

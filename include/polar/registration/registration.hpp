@@ -48,7 +48,7 @@ struct Calibration {
 struct StartReport {
   std::string name;                    // "random 3", "imaged", "regrown 1", ...
   double held_out_log_likelihood = 0;  // mean over views of the mean per localisation that was not fitted
-  double gain = 0, gain_std = 0;       // of it over the best before: paired over views, and its standard error
+  double gain = 0, gain_std = 0;  // of it over the best before: paired over views, and its standard error
   bool won = false;
 };
 
@@ -75,7 +75,7 @@ struct Registration {
   /// Held-out log density per localisation above that of a cloud without structure, and its standard error.
   double structure_gain = 0, structure_gain_std = 0;
   std::optional<OtherTemplate> other;  // where a symmetry was found or imposed
-  std::optional<Symmetry> symmetry;  // where it is asked for
+  std::optional<Symmetry> symmetry;    // where it is asked for
   int rounds = 0;
   bool converged = false;
   std::string stopped_because = "never ran";

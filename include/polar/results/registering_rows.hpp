@@ -7,6 +7,7 @@
 namespace polar {
 
 /// What finding sites needs of the rows in the channels that decide the poses.
-smlm::LocalisationTable registering_rows(const smlm::LocalisationTable& table, const smlm::ChannelOptions& channel);
+smlm::LocalisationTable registering_rows(const smlm::LocalisationTable& table,
+                                         const smlm::ChannelOptions& channel);
 
 }  // namespace polar

@@ -50,8 +50,7 @@ void judge_registration(const Evidence& cloud, const Evidence& evidence, const V
   out.verdict_reason =
       text(clear ? "localisations kept apart are explained by %.2f +- %.2f nat better than by a cloud"
                  : "localisations kept apart are explained by only %.2f +- %.2f nat better than by a cloud: "
-                   "they may "
-                   "have no structure in common",
+                   "they may have no structure in common",
            c.gain, c.standard_error) +
       text(posed ? "; the pose of %.0f %% of the particles is determined"
                  : "; the pose of only %.0f %% of the particles is determined",

@@ -78,6 +78,22 @@ Eigen::Vector3f normal3(KeyedRandom& random, double scale, bool flat) {
 
 }  // namespace
 
+std::vector<SoftPose> soft_poses_of(const std::vector<Pose>& pose) {
+  std::vector<SoftPose> out;
+  for (const Pose& p : pose) out.push_back({p.rotation.cast<float>(), p.translation.cast<float>()});
+  return out;
+}
+
+PosePrior prior_of(const RegistrationOptions& options) {
+  return {options.tilt_deg * kRadiansPerDegree, options.flip};
+}
+
+AnnealStage growth_stage(const EngineOptions& options) {
+  const ProposalOptions& p = options.proposals;
+  const AnnealOptions& a = options.anneal;
+  return {p.regrown_sweeps, p.regrown_width, a.last_width, p.regrown_beta, a.last_beta, a.narrowing, false};
+}
+
 struct SoftAnnealer::Draw {
   SoftPose pose;
   float score = 0;  // log likelihood of the points looked at, prior included

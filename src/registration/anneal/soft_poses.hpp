@@ -12,6 +12,7 @@
 #include "polar/fusion/density_grid.hpp"
 #include "polar/fusion/orbits.hpp"
 #include "polar/registration/engine_options.hpp"
+#include "polar/registration/register.hpp"
 
 namespace polar {
 
@@ -20,11 +21,15 @@ struct SoftPose {
   Eigen::Vector3f translation = Eigen::Vector3f::Zero();
 };
 
+std::vector<SoftPose> soft_poses_of(const std::vector<Pose>& pose);
+
 /// Which orientations are possible at all; part of every posterior.
 struct PosePrior {
   double tilt_rad = 0;  // standard deviation of a view's z from the template's; 0: any orientation
   bool flip = false;    // either way up
 };
+
+PosePrior prior_of(const RegistrationOptions& options);
 
 struct SoftState {
   std::vector<std::vector<SoftPose>> sample;  // of every view of the problem; empty: takes no part
@@ -42,6 +47,9 @@ struct AnnealStage {
   double first_width, last_width, first_beta, last_beta, narrowing;
   bool from_nothing = false;  // few rotations and localisations in the first half
 };
+
+/// Of a template that is grown again from few poses.
+AnnealStage growth_stage(const EngineOptions& options);
 
 class SoftAnnealer {
  public:

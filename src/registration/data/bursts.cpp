@@ -21,15 +21,13 @@ Eigen::Matrix3f matrix_of(const Symmetric3& c, bool planar) {
   return m;
 }
 
-}  // namespace
-
-std::vector<int> bursts(const View& view, const std::vector<std::uint32_t>& order, double distance,
-                        bool planar) {
-  std::vector<int> burst(view.covariance.size(), -1);
+std::vector<int> told_apart(const Eigen::Matrix3Xf& points, const std::vector<Symmetric3>& covariance,
+                            const std::vector<std::uint32_t>& order, double distance, bool planar) {
+  std::vector<int> burst(covariance.size(), -1);
   std::vector<FirstMember> first;
   const auto reach = static_cast<float>(distance * distance);
   for (const std::uint32_t j : order) {
-    const Eigen::Vector3f x = view.points.col(static_cast<Eigen::Index>(j));
+    const Eigen::Vector3f x = points.col(static_cast<Eigen::Index>(j));
     int nearest = -1;
     float least = reach;
     for (std::size_t f = 0; f < first.size(); ++f) {
@@ -39,11 +37,18 @@ std::vector<int> bursts(const View& view, const std::vector<std::uint32_t>& orde
     }
     if (nearest < 0 && first.size() < kMostFirstMembers) {
       nearest = static_cast<int>(first.size());
-      first.push_back({x, matrix_of(view.covariance[j], planar).inverse() / 2});
+      first.push_back({x, matrix_of(covariance[j], planar).inverse() / 2});
     }
     burst[j] = nearest;
   }
   return burst;
+}
+
+}  // namespace
+
+std::vector<int> bursts(const View& view, const std::vector<std::uint32_t>& order, double distance,
+                        bool planar) {
+  return told_apart(view.points, view.covariance, order, distance, planar);
 }
 
 std::vector<int> bursts(const View& view, const Eigen::Vector3f& axis, const NoiseModel& noise,
@@ -51,10 +56,9 @@ std::vector<int> bursts(const View& view, const Eigen::Vector3f& axis, const Noi
   NoiseModel factors;
   factors.lateral_factor = noise.lateral_factor, factors.axial_factor = noise.axial_factor;
   factors.planar = noise.planar;
-  View scaled{view.points, {}};
-  for (const Symmetric3& c : view.covariance)
-    scaled.covariance.push_back(effective_covariance(c, axis, factors));
-  return bursts(scaled, order, distance, noise.planar);
+  std::vector<Symmetric3> scaled;
+  for (const Symmetric3& c : view.covariance) scaled.push_back(effective_covariance(c, axis, factors));
+  return told_apart(view.points, scaled, order, distance, noise.planar);
 }
 
 }  // namespace polar

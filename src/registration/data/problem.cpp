@@ -94,11 +94,19 @@ Problems make_problems(const Views& views, const EvidenceOptions& options, std::
   return {std::move(thinned), std::move(plain)};
 }
 
-std::vector<int> some_views(const Problem& problem, std::size_t most) {
-  const std::size_t n = std::min(problem.size(), most);
+std::vector<int> evenly(const std::vector<int>& views, std::size_t most) {
+  const std::size_t n = std::min(views.size(), most);
   std::vector<int> few(n);
-  for (std::size_t k = 0; k < n; ++k) few[k] = static_cast<int>(k * problem.size() / n);
+  for (std::size_t k = 0; k < n; ++k) few[k] = views[k * views.size() / n];
   return few;
+}
+
+std::vector<int> share_at_random(const std::vector<int>& views, double share, KeyedRandom random) {
+  const std::vector<std::uint32_t> order = random_order(views.size(), random);
+  const auto n = static_cast<std::size_t>(std::ceil(share * static_cast<double>(views.size())));
+  std::vector<int> some(n);
+  for (std::size_t k = 0; k < n; ++k) some[k] = views[order[k]];
+  return some;
 }
 
 Subsets first_of(const Subsets& subsets, std::size_t most) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "polar/core/rng.hpp"
 #include "polar/core/view.hpp"
 #include "polar/fusion/fusion_data.hpp"
 #include "polar/registration/engine_options.hpp"
@@ -19,8 +20,8 @@ struct Problem {
   Subsets fitted;    // of these, the bursts that templates are fitted to while something is judged
   Subsets held_out;  // of the other bursts, a few localisations of each: they judge
   std::vector<int> all;
-  bool crowded =
-      false;  // samples are thinned because strands are expected: centres need the support of many views
+  // Samples are thinned because strands are expected: centres need the support of many views.
+  bool crowded = false;
   NoiseModel noise;  // by whose factors bursts are told apart
   std::uint64_t seed = 1;
   double localisations = 0;
@@ -41,8 +42,11 @@ struct Problems {
 Problems make_problems(const Views& views, const EvidenceOptions& options, std::uint64_t seed,
                        const NoiseModel& noise = {});
 
-/// At most `most` views, evenly through the set: neighbours may share a field of view.
-std::vector<int> some_views(const Problem& problem, std::size_t most);
+/// At most `most` of them, evenly through the list: neighbours may share a field of view.
+std::vector<int> evenly(const std::vector<int>& views, std::size_t most);
+
+/// A share of them, rounded up, in a random order.
+std::vector<int> share_at_random(const std::vector<int>& views, double share, KeyedRandom random);
 
 /// The first `most` of every list.
 Subsets first_of(const Subsets& subsets, std::size_t most);

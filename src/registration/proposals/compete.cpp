@@ -29,8 +29,8 @@ class Contest {
   Contest(const Problems& problems, const RegistrationOptions& options)
       : options_(options),
         problem_(problems.plain),
-        which_(some_views(problems.plain, static_cast<std::size_t>(options.engine.proposals.views))),
-        prior_{options.tilt_deg * kRadiansPerDegree, options.flip},
+        which_(evenly(problems.plain.all, static_cast<std::size_t>(options.engine.proposals.views))),
+        prior_(prior_of(options)),
         plain_(problems.plain, which_, options.engine.anneal, prior_),
         thinned_(problems.thinned, which_, options.engine.anneal, prior_),
         seed_(problems.plain.seed) {}
@@ -71,7 +71,7 @@ class Contest {
     Hypothesis h{SoftState(plain_.frame()), {}, false, {}, false};
     h.report.name = name;
     h.state = plain_.from_poses(pose, posed, options_.engine.proposals.regrown_width);
-    plain_.anneal(growth(), key, h.state);
+    plain_.anneal(growth_stage(options_.engine), key, h.state);
     return h;
   }
 
@@ -84,7 +84,7 @@ class Contest {
         {},
         true};
     h.report.name = "template";
-    plain_.continue_under(growth(), 902, h.state);
+    plain_.continue_under(growth_stage(options_.engine), 902, h.state);
     return h;
   }
 
@@ -92,17 +92,15 @@ class Contest {
     const Hypothesis& from = entered_[best_];
     Hypothesis h{from.state, {}, from.crowded, {}, from.of_known};
     h.report.name = "regrown " + std::to_string(k);
-    const auto some = static_cast<std::size_t>(
-        std::ceil(options_.engine.proposals.regrown_share * static_cast<double>(which_.size())));
-    const std::vector<std::uint32_t> order =
-        random_order(which_.size(), KeyedRandom(seed_, static_cast<std::uint64_t>(k), kRegrownStage));
     SoftState seed = from.state;
-    for (std::size_t j = some; j < order.size(); ++j)
-      seed.sample[static_cast<std::size_t>(which_[order[j]])].clear();
+    seed.sample.assign(seed.sample.size(), {});
+    for (const int v : share_at_random(which_, options_.engine.proposals.regrown_share,
+                                       KeyedRandom(seed_, static_cast<std::uint64_t>(k), kRegrownStage)))
+      seed.sample[static_cast<std::size_t>(v)] = from.state.sample[static_cast<std::size_t>(v)];
     of(h.crowded).fuse(options_.engine.proposals.regrown_width, seed);
     h.state.density = seed.density;
     h.state.outlier_fraction = seed.outlier_fraction;
-    of(h.crowded).continue_under(growth(), 100 + static_cast<std::uint64_t>(k), h.state);
+    of(h.crowded).continue_under(growth_stage(options_.engine), 100 + static_cast<std::uint64_t>(k), h.state);
     return h;
   }
 
@@ -133,21 +131,8 @@ class Contest {
   }
   const SoftAnnealer& of(bool crowded) const { return crowded ? thinned_ : plain_; }
   const std::vector<int>& which() const { return which_; }
-  /// At most so many of them, evenly.
-  std::vector<int> some(std::size_t most) const {
-    std::vector<int> few;
-    const std::size_t n = std::min(most, which_.size());
-    for (std::size_t k = 0; k < n; ++k) few.push_back(which_[k * which_.size() / n]);
-    return few;
-  }
 
  private:
-  AnnealStage growth() const {
-    const ProposalOptions& p = options_.engine.proposals;
-    const AnnealOptions& o = options_.engine.anneal;
-    return {p.regrown_sweeps, p.regrown_width, o.last_width, p.regrown_beta, o.last_beta, o.narrowing, false};
-  }
-
   const RegistrationOptions& options_;
   const Problem& problem_;
   std::vector<int> which_;
@@ -197,7 +182,7 @@ Competition compete(const Problems& problems, const Autoencoder* model, const Re
         !step(contest.from("imaged", std::vector<SoftPose>(problems.plain.size()), contest.which(), 900)))
       return false;
     if (!wants(options, "polar") || model == nullptr) return true;
-    const std::vector<int> few = contest.some(static_cast<std::size_t>(o.polar_views));
+    const std::vector<int> few = evenly(contest.which(), static_cast<std::size_t>(o.polar_views));
     return step(contest.from("polar", polar_poses(problems.plain, few, *model, options), few, 901));
   };
   if (wants(options, "template") && !step(contest.known())) return cancelled;

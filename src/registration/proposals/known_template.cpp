@@ -58,7 +58,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
 double posed_correlation(const Problem& problem, const std::vector<int>& which,
                          const RegistrationOptions& options) {
   const AnnealOptions& o = options.engine.anneal;
-  const SoftAnnealer annealer(problem, which, o, {options.tilt_deg * kRadiansPerDegree, options.flip});
+  const SoftAnnealer annealer(problem, which, o, prior_of(options));
   SoftState state =
       known_state(options.known, annealer.frame(), problem, o.last_width, o.first_outlier_fraction);
   const Eigen::Vector3f centre = state.density.centroid().cast<float>();

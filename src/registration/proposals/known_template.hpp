@@ -21,8 +21,8 @@ SoftState known_state(const KnownTemplate& known, const VoxelFrame& frame, const
 /// centre: those are the same whatever the poses are.
 struct Likeness {
   double particles = 0;
-  double noise =
-      0;  // of the same particles with every localisation turned about its particle's centre at random
+  // Of the same particles with every localisation turned about its particle's centre at random.
+  double noise = 0;
   /// Of the particles' likeness, what noise shows too.
   double own_share() const;
 };

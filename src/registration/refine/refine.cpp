@@ -17,14 +17,20 @@ namespace polar {
 namespace {
 
 constexpr std::uint32_t kTurnStage = 31, kCloudStage = 33;
-constexpr Eigen::Index kCloudCentres =
-    12000;                         // of a template turned any way: its shells err by a few per cent
+// Of a template turned any way: its shells err by a few per cent.
+constexpr Eigen::Index kCloudCentres = 12000;
 constexpr double kPooled = 2;      // spreads of a centre, within which a view tells centres apart no better
 constexpr int kJudgingSweeps = 2;  // without the held-out localisations, before they judge
 
 int centres_for(const Problem& problem, const RefineOptions& o) {
   return std::clamp(static_cast<int>(problem.localisations / o.localisations_per_centre), o.fewest_centres,
                     o.most_centres);
+}
+
+// The template's width raised so far that it is drawn no sharper than `width`, together with what noise adds.
+void draw_no_sharper_than(double width, NoiseModel& noise) {
+  noise.width = std::sqrt(
+      std::max(noise.width * noise.width, width * width - noise.lateral_extra * noise.lateral_extra));
 }
 
 double spread(const NoiseModel& noise) { return std::hypot(noise.width, noise.lateral_extra); }
@@ -83,8 +89,7 @@ void Refiner::search(Fit& fit) const { search(problem_.sampled, fit); }
 
 void Refiner::search(const Subsets& subsets, Fit& fit) const {
   NoiseModel noise = fit.noise;
-  noise.width = std::sqrt(std::max(noise.width * noise.width, options_.search_width * options_.search_width -
-                                                                  noise.lateral_extra * noise.lateral_extra));
+  draw_no_sharper_than(options_.search_width, noise);
   SearchAgainOptions o;
   o.basins = options_.basins;
   o.group = fit.group;
@@ -104,8 +109,8 @@ void Refiner::search(const Subsets& subsets, Fit& fit) const {
 
 // Fitted again without the held-out localisations.
 Fit Refiner::blind(Fit fit) const {
-  fit.occupancy =
-      std::numeric_limits<double>::infinity();  // a label that judges is missing in what was fitted
+  // A label that judges is missing in what was fitted.
+  fit.occupancy = std::numeric_limits<double>::infinity();
   sweep(first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations)), fit, kJudgingSweeps);
   return fit;
 }
@@ -122,9 +127,7 @@ Evidence Refiner::judge(const Fit& fit) const { return held_out(blind(fit)); }
 
 Refiner::AgainstCloud Refiner::judge_against_cloud(Fit fit) const {
   // A structure that is there shows at the first width already; the last one is as fine as all views allow.
-  fit.noise.width = std::sqrt(std::max(
-      fit.noise.width * fit.noise.width,
-      options_.first_width * options_.first_width - fit.noise.lateral_extra * fit.noise.lateral_extra));
+  draw_no_sharper_than(options_.first_width, fit.noise);
   fit = blind(std::move(fit));
   search(problem_.fitted, fit);
   fit = blind(std::move(fit));

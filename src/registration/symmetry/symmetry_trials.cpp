@@ -13,8 +13,8 @@ namespace polar {
 
 namespace {
 
-constexpr const char* kAnyTurn =
-    "C7";  // what looks alike under it and is no heptagon is alike under any turn
+// What looks alike under it and is no heptagon is alike under any turn.
+constexpr const char* kAnyTurn = "C7";
 
 struct Trial {
   std::string group;
@@ -45,8 +45,8 @@ class Trials {
       : problem_(problem),
         options_(options.engine),
         o_(options_.symmetry),
-        annealer_(problem, some_views(problem, static_cast<std::size_t>(o_.views)), options_.anneal,
-                  {options.tilt_deg * kRadiansPerDegree, options.flip}),
+        annealer_(problem, evenly(problem.all, static_cast<std::size_t>(o_.views)), options_.anneal,
+                  prior_of(options)),
         coarse_(coarse),
         similarity_(coarse.density, o_.similarity_blur) {
     // Poses of all views that take part, under the template of those that competed.
