@@ -4,38 +4,20 @@
 
 namespace polar {
 
-namespace {
-
-template <class Kernel>
-using Set = const Kernel& (*)();
-
-template <class Kernel>
-const Kernel& active(Set<Kernel> portable, Set<Kernel> avx2, Set<Kernel> avx512) {
-  switch (active_isa()) {
-    case Isa::avx512:
-      return avx512();
-    case Isa::avx2:
-      return avx2();
-    case Isa::portable:
-      break;
-  }
-  return portable();
-}
-
-}  // namespace
+using kernel::LookupKernel, kernel::MixtureKernel;
 
 #if defined(__x86_64__)
-#define POLAR_SETS(kernel) kernel##_portable, kernel##_avx2, kernel##_avx512
+const MixtureKernel& mixture_kernel() {
+  return of_active_isa(kernel::mixture_kernel_portable, kernel::mixture_kernel_avx2,
+                       kernel::mixture_kernel_avx512);
+}
+const LookupKernel& lookup_kernel() {
+  return of_active_isa(kernel::lookup_kernel_portable, kernel::lookup_kernel_avx2,
+                       kernel::lookup_kernel_avx512);
+}
 #else
-#define POLAR_SETS(kernel) kernel##_portable, kernel##_portable, kernel##_portable
+const MixtureKernel& mixture_kernel() { return kernel::mixture_kernel_portable(); }
+const LookupKernel& lookup_kernel() { return kernel::lookup_kernel_portable(); }
 #endif
-
-const kernel::MixtureKernel& mixture_kernel() {
-  return active<kernel::MixtureKernel>(POLAR_SETS(kernel::mixture_kernel));
-}
-
-const kernel::LookupKernel& lookup_kernel() {
-  return active<kernel::LookupKernel>(POLAR_SETS(kernel::lookup_kernel));
-}
 
 }  // namespace polar

@@ -6,16 +6,10 @@ namespace polar::kernel {
 
 const Table& active_table() {
 #if defined(__x86_64__)
-  switch (active_isa()) {
-    case Isa::avx512:
-      return avx512_table();
-    case Isa::avx2:
-      return avx2_table();
-    case Isa::portable:
-      break;
-  }
-#endif
+  return of_active_isa(portable_table, avx2_table, avx512_table);
+#else
   return portable_table();
+#endif
 }
 
 }  // namespace polar::kernel

@@ -16,4 +16,11 @@ void limit_isa(Isa most);
 
 const char* name(Isa isa);
 
+/// Of a thing that is compiled once per set, the copy of the set in use.
+template <class T>
+const T& of_active_isa(const T& (*portable)(), const T& (*avx2)(), const T& (*avx512)()) {
+  const Isa isa = active_isa();
+  return isa == Isa::avx512 ? avx512() : isa == Isa::avx2 ? avx2() : portable();
+}
+
 }  // namespace polar
