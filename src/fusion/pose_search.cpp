@@ -30,7 +30,43 @@ void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen:
   }
 }
 
+// Uphill over turns about the axes of the template and shifts along them, all of one size.
+void climb_pose(const DirectionVolumes& volumes, const SearchView& view, float turn, float shift, bool planar,
+                LookedUpPose& at) {
+  constexpr int kMostSteps = 4;
+  const std::vector<Eigen::Vector3f> shifts = axis_shifts(shift, planar);
+  std::vector<Eigen::Matrix3f> turns;
+  for (int a = planar ? 2 : 0; a < 3; ++a)
+    for (const float sign : {-1.0f, 1.0f})
+      turns.push_back(Eigen::AngleAxisf(sign * turn, Eigen::Vector3f::Unit(a)).toRotationMatrix());
+  std::vector<Eigen::Vector3f> around(shifts.size() - 1);
+  std::vector<float> there(around.size());
+  for (int s = 0; s < kMostSteps; ++s) {
+    LookedUpPose best = at;
+    for (std::size_t a = 0; a < around.size(); ++a) around[a] = at.translation + shifts[a + 1];
+    volumes.scores(view, volumes.direction_of(view, at.rotation), at.rotation, around, there.data());
+    for (std::size_t a = 0; a < around.size(); ++a)
+      if (there[a] > best.score) best = {at.rotation, around[a], there[a]};
+    for (const Eigen::Matrix3f& t : turns) {
+      const Eigen::Matrix3f r = t * at.rotation;
+      const float score = volumes.score(view, volumes.direction_of(view, r), r, at.translation);
+      if (score > best.score) best = {r, at.translation, score};
+    }
+    if (best.score <= at.score) break;
+    at = best;
+  }
+}
+
 }  // namespace
+
+LookedUpPose climbed(const DirectionVolumes& volumes, const SearchView& view, const Pose& start, float turn,
+                     float shift, bool planar) {
+  LookedUpPose at{start.rotation.cast<float>(), start.translation.cast<float>(), 0};
+  at.score = volumes.score(view, volumes.direction_of(view, at.rotation), at.rotation, at.translation);
+  for (int halves = 0; halves < 3; ++halves, turn *= 0.5f, shift *= 0.5f)
+    climb_pose(volumes, view, turn, shift, planar, at);
+  return at;
+}
 
 std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar) {
   std::vector<Eigen::Vector3f> out = {Eigen::Vector3f::Zero()};

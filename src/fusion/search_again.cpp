@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/so3.hpp"
 #include "view_likelihood.hpp"
@@ -11,6 +12,14 @@
 namespace polar {
 
 namespace {
+
+constexpr double kFirstTurn = 0.3;  // of the grid's spacing: half of it may already leave the basin
+
+// Radians between neighbours of a grid of so many rotations over SO(3) or the circle.
+double grid_spacing(std::size_t rotations, bool planar) {
+  const auto n = static_cast<double>(std::max<std::size_t>(1, rotations));
+  return planar ? kTwoPi / n : std::cbrt(8 * kPi * kPi / n);
+}
 
 struct Outcome {
   Pose pose;
@@ -42,18 +51,30 @@ std::vector<RefinedPose> within(double doubt, const std::vector<RefinedPose>& ca
   return out;
 }
 
-// The best few basins. Under a group most of them are images of one: as many are added that are not, so that
-// the second best is known too. The images stay: each is seen from its own grid point, one of them well.
-std::vector<Pose> basins_modulo(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn,
-                                const SearchAgainOptions& options) {
-  if (options.group.empty()) return basins(scores, grid, turn, options.basins);
-  const auto few = static_cast<std::size_t>(options.basins);
+// The best few basins, climbed by look-ups, one pose a mode modulo the group; those that a look-up's error
+// cannot save are left out.
+std::vector<Pose> likely_modes(const DirectionVolumes& volumes, const SearchView& view,
+                               const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn,
+                               const SearchAgainOptions& options, bool planar) {
+  const auto images = static_cast<int>(std::max<std::size_t>(1, options.group.size()));
+  const double spacing = grid_spacing(grid.rotation.size() * static_cast<std::size_t>(images), planar);
+  std::vector<LookedUpPose> found;
+  for (const Pose& b : basins(scores, grid, turn, options.basins * std::min(images, 2)))
+    found.push_back(climbed(volumes, view, b, static_cast<float>(kFirstTurn * spacing),
+                            static_cast<float>(options.climb_shift), planar));
+  std::stable_sort(found.begin(), found.end(),
+                   [](const LookedUpPose& a, const LookedUpPose& b) { return a.score > b.score; });
   std::vector<Pose> out;
-  for (const Pose& b : basins(scores, grid, turn, options.basins * static_cast<int>(options.group.size()))) {
-    const bool image = std::any_of(out.begin(), out.end(), [&](const Pose& o) {
-      return angle_modulo(options.group, b.rotation, o.rotation) < options.escape_rad;
+  for (const LookedUpPose& p : found) {
+    if (out.size() >= static_cast<std::size_t>(options.basins)) break;
+    if (p.score < found.front().score - options.lookup_doubt) break;
+    const Pose pose{p.rotation.cast<double>(), p.translation.cast<double>()};
+    const bool known = std::any_of(out.begin(), out.end(), [&](const Pose& o) {
+      return angle_modulo(options.group, pose.rotation, o.rotation) < options.same_mode_rad &&
+             (options.group.empty() ? (pose.translation - o.translation).norm() < 2 * options.climb_shift
+                                    : true);
     });
-    if (out.size() < few || (!image && out.size() < 2 * few)) out.push_back(b);
+    if (!known) out.push_back(pose);
   }
   return out;
 }
@@ -98,14 +119,15 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
     const auto uphill = [&](const KernelLocalisations& of, const Pose& start, int evaluations) {
       return refine_pose(frame, of, start, blocked.background(), noise.planar, evaluations);
     };
-    const GridScores scores = score_grid(volumes, search_view(views.view[i], axes[i], noise, classes, few),
-                                         grid, turn, options.grid);
+    const SearchView looked = search_view(views.view[i], axes[i], noise, classes, few);
+    const GridScores scores = score_grid(volumes, looked, grid, turn, options.grid);
     const KernelLocalisations localisations = kernel_localisations(views.view[i], axes[i], noise, few);
     const auto refined = [&](const Pose& start) {
       return uphill(localisations, start.inverse(), options.evaluations);
     };
     std::vector<RefinedPose> candidates;
-    for (const Pose& basin : basins_modulo(scores, grid, turn, options)) candidates.push_back(refined(basin));
+    for (const Pose& mode : likely_modes(volumes, looked, scores, grid, turn, options, noise.planar))
+      candidates.push_back(refined(mode));
     const RefinedPose current = refined(poses[i]);
     outcome[i] = best_of(candidates, current, options, few.size());
     const bool clear = outcome[i].margin * static_cast<double>(few.size()) >= options.doubt;

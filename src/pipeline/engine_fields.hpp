@@ -28,6 +28,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("localisations", o.anneal.localisations);
     s.field("most_localisations", o.anneal.most_localisations);
     s.field("most_judging", o.anneal.most_judging);
+    s.field("folds", o.anneal.folds);
     s.field("unit_share", o.anneal.unit_share);
     s.field("most_rotations", o.anneal.most_rotations);
     s.field("first_localisations", o.anneal.first_localisations);
@@ -73,6 +74,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("first_width", o.symmetry.first_width);
     s.field("first_beta", o.symmetry.first_beta);
     s.field("narrowing", o.symmetry.narrowing);
+    s.field("draws", o.symmetry.draws);
     s.field("means_standard_errors", o.symmetry.means_standard_errors);
     s.field("means_loss", o.symmetry.means_loss);
     s.field("relabellings", o.symmetry.relabellings);
@@ -90,6 +92,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("rotations", o.refine.rotations);
     s.field("planar_rotations", o.refine.planar_rotations);
     s.field("basins", o.refine.basins);
+    s.field("lookup_doubt", o.refine.lookup_doubt);
     s.field("search_localisations", o.refine.search_localisations);
     s.field("shift", o.refine.shift);
     s.field("step", o.refine.step);

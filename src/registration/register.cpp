@@ -26,7 +26,6 @@ namespace polar {
 
 namespace {
 
-constexpr std::uint64_t kDrawSeed = 7919;  // between the draws of what judges the verdict
 constexpr std::uint32_t kRegrownStage = 29;
 constexpr double kLargestFactor = 1.5;  // of a, either way, before a warning
 
@@ -93,6 +92,8 @@ class Run {
     if (!restore(checkpoint_, "coarse", coarse)) {
       if (!find(coarse)) return cancelled();
       keep(checkpoint_, "coarse", coarse);
+    } else {
+      split_bursts(coarse.noise);
     }
     return finish(std::move(coarse));
   }
@@ -101,6 +102,7 @@ class Run {
     CoarseState coarse;
     coarse.pose = pose;
     if (names_a_group(options_.symmetry)) coarse.group = options_.symmetry;
+    find_noise(coarse);
     return finish(std::move(coarse));
   }
 
@@ -123,25 +125,27 @@ class Run {
     coarse.agreement = found.agreement;
     coarse.warnings = std::move(found.warnings);
     coarse.weights_sha256 = model.weights_sha256;
-    const Problem& problem = problems_->of(coarse.crowded);
     SoftState state = std::move(found.winner);
+    coarse.pose = all_posed(coarse, state);
+    find_noise(coarse);
+    if (progress_.cancelled()) return false;
+    std::vector<SymmetryChoice::Rival> rivals;
     if (options_.symmetry != "none") {
       const std::string asked = names_a_group(options_.symmetry) ? options_.symmetry : "";
-      SymmetryChoice choice = choose_symmetry(problem, options_, state, asked, progress_);
+      SymmetryChoice choice =
+          choose_symmetry(problems_->of(coarse.crowded), options_, state, asked, progress_);
       if (progress_.cancelled()) return false;
       coarse.symmetry = std::move(choice.report);
       coarse.continuous = choice.continuous;
       if (options_.symmetry != "detect") {
         coarse.group = choice.group;
         state = std::move(choice.state);
+        rivals = std::move(choice.rival);
       }
       timed("symmetry");
     }
-    const AnnealOptions& a = options_.engine.anneal;
-    const SoftAnnealer all(problem, problem.all, a, prior_of(options_));
-    all.continue_under({a.last_sweeps, a.last_width, a.last_width, a.last_beta, a.last_beta, 1, false}, 4000,
-                       state);
-    coarse.pose = poses_of(state.best);
+    coarse.pose = all_posed(coarse, std::move(state));
+    choose_among(std::move(rivals), coarse);
     timed("all views");
     return !progress_.cancelled();
   }
@@ -153,47 +157,91 @@ class Run {
                                         : (exhaustive ? kExhaustiveRotations : refine.rotations);
     const RotationGroup group = rotations_of(coarse.group);
     const SearchGrid grid = search_grid(rotations, views_.planar, group);
-    FineState fine;
-    const bool known = restore(checkpoint_, "fine", fine);
-    if (!known) {
-      const Refiner first(problems_->of(coarse.crowded), grid, options_.engine);
-      fine.fit = first.with_noise(first.begin(std::move(coarse.pose), NoiseModel{}, group));
-      timed("noise");
-      if (progress_.cancelled()) return cancelled();
-    }
-    if (!known) fine.splitting = fine.fit.noise;
-    if (fine.splitting.lateral_factor != 1 || fine.splitting.axial_factor != 1)
-      problems_.emplace(make_problems(views_, options_.engine.evidence, options_.seed, fine.splitting));
     const Problem& problem = problems_->of(coarse.crowded);
     const Refiner refiner(problem, grid, options_.engine);
-    if (!known) {
-      fine.fit = refiner.rounds(std::move(fine.fit), progress_);
+    Fit fit;
+    if (!restore(checkpoint_, "fine", fit)) {
+      fit = refiner.rounds(refiner.begin(std::move(coarse.pose), coarse.noise, group), progress_);
       timed("rounds");
-      fine.fit = regrown(problem, refiner, std::move(fine.fit));
+      fit = regrown(problem, refiner, std::move(fit));
       timed("regrown");
       if (progress_.cancelled()) return cancelled();
-      fine.fit = refiner.calibrated(std::move(fine.fit));
+      fit = refiner.calibrated(std::move(fit));
       timed("calibration");
-      fine.fit = refiner.discrete(std::move(fine.fit));
+      fit = refiner.discrete(std::move(fit));
       timed("centres");
-      refiner.search(fine.fit);
-      refiner.sweep(fine.fit, refine.sweeps);
-      fine.fit.evidence = refiner.judge(fine.fit);
+      refiner.search(fit);
+      refiner.sweep(fit, refine.sweeps);
+      fit.evidence = refiner.judge(fit);
       timed("last search");
       if (progress_.cancelled()) return cancelled();
-      keep(checkpoint_, "fine", fine);
+      keep(checkpoint_, "fine", fit);
     }
-    Fit fit = std::move(fine.fit);
     out_.symmetry = coarse.symmetry;
     if (!group.empty()) fit = tested(problem, refiner, coarse.group, std::move(fit));
     timed("symmetry tested");
-    const Refiner::AgainstCloud against = against_cloud(grid, coarse.crowded, fit);
+    const Refiner::AgainstCloud against = against_cloud(grid, problem, fit);
     timed("verdict");
     report_views(problem, options_.engine, fit, out_);
     timed("polish");
     judge_registration(against.cloud, against.structure, options_.engine.verdict, out_);
     conclude(problem, coarse, fit);
     return std::move(out_);
+  }
+
+  // Poses of all views under the template of those that competed.
+  std::vector<Pose> all_posed(const CoarseState& coarse, SoftState state) const {
+    const AnnealOptions& a = options_.engine.anneal;
+    const Problem& problem = problems_->of(coarse.crowded);
+    SoftAnnealer(problem, problem.all, a, prior_of(options_))
+        .continue_under({a.last_sweeps, a.last_width, a.last_width, a.last_beta, a.last_beta, 1, false}, 4000,
+                        state);
+    return poses_of(state.best);
+  }
+
+  // Which localisations share a label, and so what may judge, is known only when the noise is.
+  void find_noise(CoarseState& coarse) {
+    const SearchGrid none;
+    const Refiner refiner(problems_->of(coarse.crowded), none, options_.engine);
+    coarse.noise =
+        refiner.with_noise(refiner.begin(coarse.pose, NoiseModel{}, rotations_of(coarse.group))).noise;
+    split_bursts(coarse.noise);
+    timed("noise");
+  }
+
+  void split_bursts(const NoiseModel& noise) {
+    if (noise.lateral_factor != 1 || noise.axial_factor != 1)
+      problems_.emplace(make_problems(views_, options_.engine.evidence, options_.seed, noise));
+  }
+
+  // Coarse evidence hardly tells orders of an axis apart; exact templates do.
+  void choose_among(std::vector<SymmetryChoice::Rival> rivals, CoarseState& coarse) const {
+    if (rivals.empty()) return;
+    const SearchGrid none;
+    Problem problem = problems_->of(coarse.crowded);
+    const Refiner refiner(problem, none, options_.engine);
+    const auto judged = [&](const std::string& group, const std::vector<Pose>& pose) {
+      hold_out(options_.engine.evidence, 0, problem);
+      const Fit fit =
+          refiner.narrowed(refiner.judged(refiner.begin(pose, coarse.noise, rotations_of(group))));
+      std::vector<Evidence> draw;
+      for (int d = 0; d < options_.engine.symmetry.draws; ++d) {
+        hold_out(options_.engine.evidence, static_cast<std::uint64_t>(d), problem);
+        draw.push_back(refiner.judge(fit));
+      }
+      return mean_over(draw);
+    };
+    Evidence best = judged(coarse.group, coarse.pose);
+    for (SymmetryChoice::Rival& r : rivals) {
+      std::vector<Pose> pose = all_posed(coarse, std::move(r.state));
+      Evidence e = judged(r.group, pose);
+      if (!compare(best, e).better_by(0)) continue;
+      best = std::move(e);
+      coarse.group = r.group, coarse.pose = std::move(pose);
+      coarse.symmetry->group = r.group;
+      for (const SymmetryTrial& t : coarse.symmetry->tried)
+        if (t.group == r.group) coarse.symmetry->gain = t.gain, coarse.symmetry->gain_std = t.gain_std;
+    }
   }
 
   // The template grown again from the poses of some views, as long as evidence gains by it: a hot spot
@@ -211,7 +259,7 @@ class Run {
       annealer.anneal(growth_stage(options_.engine), 5000 + static_cast<std::uint64_t>(k), state);
       Fit next = refiner.rounds(refiner.begin(poses_of(state.best), fit.noise, fit.group), progress_);
       const Comparison c = compare(fit.evidence, next.evidence);
-      const bool better = c.better_by(options_.engine.evidence.standard_errors);
+      const bool better = c.better_by(0);  // neither is the simpler one
       rejected = better ? 0 : rejected + 1;
       if (better) fit = std::move(next);
     }
@@ -219,31 +267,19 @@ class Run {
   }
 
   // Several draws of what judges: a view says little by a fifth of its bursts.
-  Refiner::AgainstCloud against_cloud(const SearchGrid& grid, bool crowded, const Fit& fit) const {
+  Refiner::AgainstCloud against_cloud(const SearchGrid& grid, const Problem& problem, const Fit& fit) const {
     const VerdictOptions& o = options_.engine.verdict;
-    Refiner::AgainstCloud sum, mean;
-    std::vector<double> count(fit.pose.size(), 0.0);
-    sum.structure.assign(count.size(), 0.0), sum.cloud.assign(count.size(), 0.0);
-    // A template of hot spots asks for less noise than there is, and would then judge by blinks it has
-    // fitted.
-    NoiseModel splitting = fit.noise;
-    splitting.lateral_factor = std::max(1.0, splitting.lateral_factor);
-    splitting.axial_factor = std::max(1.0, splitting.axial_factor);
-    for (int draw = 0; draw < o.draws; ++draw) {
-      const Problems other =
-          make_problems(views_, options_.engine.evidence,
-                        options_.seed + kDrawSeed * static_cast<std::uint64_t>(draw + 1), splitting);
-      const Refiner::AgainstCloud one =
-          Refiner(other.of(crowded), grid, options_.engine).judge_against_cloud(fit);
-      for (std::size_t i = 0; i < count.size(); ++i) {
-        if (!std::isfinite(one.structure[i]) || !std::isfinite(one.cloud[i])) continue;
-        sum.structure[i] += one.structure[i], sum.cloud[i] += one.cloud[i], ++count[i];
-      }
-      mean = sum;
-      for (std::size_t i = 0; i < count.size(); ++i)
-        mean.structure[i] /= count[i], mean.cloud[i] /= count[i];  // not a number where nothing judged
-      if (over_cloud(mean.cloud, mean.structure, o).better_by(o.enough_standard_errors))
-        break;  // beyond doubt
+    Problem other = problem;
+    const Refiner refiner(other, grid, options_.engine);
+    std::vector<Evidence> structure, cloud;
+    Refiner::AgainstCloud mean;
+    for (int draw = 1; draw <= o.draws; ++draw) {
+      hold_out(options_.engine.evidence, static_cast<std::uint64_t>(draw), other);
+      Refiner::AgainstCloud one = refiner.judge_against_cloud(fit);
+      structure.push_back(std::move(one.structure)), cloud.push_back(std::move(one.cloud));
+      mean = {mean_over(structure), mean_over(cloud)};
+      const Comparison c = over_cloud(mean.cloud, mean.structure, o);
+      if (std::abs(c.gain) > o.enough_standard_errors * c.standard_error) break;
     }
     return mean;
   }

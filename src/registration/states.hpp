@@ -18,18 +18,13 @@ struct CoarseState {
   std::vector<Pose> pose;  // template_from_view
   bool crowded = false;    // of which problem they are
   std::string group = "C1";
+  NoiseModel noise;  // by which bursts are told apart
   bool continuous = false;
   std::optional<Symmetry> symmetry;
   std::vector<StartReport> starts;
   double agreement = 0;
   std::string weights_sha256;
   std::vector<std::string> warnings;
-};
-
-/// And when the exact template is.
-struct FineState {
-  Fit fit;
-  NoiseModel splitting;  // by which bursts were told apart
 };
 
 namespace states {
@@ -66,21 +61,17 @@ void fields(Archive& archive, StartReport& value) {
 }
 template <class Archive>
 void fields(Archive& archive, CoarseState& value) {
-  auto& [pose, crowded, group, continuous, symmetry, starts, agreement, weights_sha256, warnings] = value;
+  auto& [pose, crowded, group, noise, continuous, symmetry, starts, agreement, weights_sha256, warnings] =
+      value;
   bool has = symmetry.has_value();
   Symmetry known = symmetry.value_or(Symmetry{});
-  archive(pose, crowded, group, continuous, has, known, starts, agreement, weights_sha256, warnings);
+  archive(pose, crowded, group, noise, continuous, has, known, starts, agreement, weights_sha256, warnings);
   if (has) symmetry = known;
 }
 template <class Archive>
 void fields(Archive& archive, Fit& value) {
   auto& [mixture, pose, noise, group, margin, occupancy, evidence, rounds, escaped] = value;
   archive(mixture, pose, noise, group, margin, occupancy, evidence, rounds, escaped);
-}
-template <class Archive>
-void fields(Archive& archive, FineState& value) {
-  auto& [fit, splitting] = value;
-  archive(fit, splitting);
 }
 
 }  // namespace states

@@ -29,6 +29,16 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
 std::vector<Pose> basins(const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn,
                          int most);
 
+/// A pose template_from_view and its log likelihood by look-ups.
+struct LookedUpPose {
+  Eigen::Matrix3f rotation;
+  Eigen::Vector3f translation;
+  float score = 0;
+};
+/// Uphill from `start` by look-ups alone, over turns and shifts that are halved twice.
+LookedUpPose climbed(const DirectionVolumes& volumes, const SearchView& view, const Pose& start, float turn,
+                     float shift, bool planar);
+
 /// 0 and +-shift along the axes (7), planar without z (5).
 std::vector<Eigen::Vector3f> axis_shifts(float shift, bool planar);
 

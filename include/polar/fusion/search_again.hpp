@@ -15,8 +15,12 @@
 namespace polar {
 
 struct SearchAgainOptions {
-  int basins = 8;                // M of the paper
-  int evaluations = 8;           // of the refinement of a basin
+  int basins = 8;  // M of the paper
+  // Log likelihood by which a mode may lie below the best by look-ups, which err, and still be refined.
+  double lookup_doubt = 14;
+  double climb_shift = 0.03;     // first step of a mode's ascent by look-ups, particle radii
+  double same_mode_rad = 0.1;    // within which two climbed poses are one
+  int evaluations = 8;           // of the refinement of a mode
   int most_localisations = 160;  // of a view that the search looks at: enough to find basins
   // Basins whose log likelihoods differ by less over so few localisations are told apart by more of them.
   double doubt = 8;

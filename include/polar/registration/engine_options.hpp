@@ -10,7 +10,7 @@ namespace polar {
 /// Which localisations judge: whole bursts, since the blinks of one label share its place.
 struct EvidenceOptions {
   double held_out_share = 0.2;   // of a view's localisations, chosen
-  double burst_distance = 3.4;   // Mahalanobis, of two localisations of one burst: 99 % of them
+  double burst_distance = 3.4;   // Mahalanobis, of a localisation from the mean of its burst: 99 % of them
   int most_of_burst = 2;         // localisations of a burst that judge; chosen
   double standard_errors = 2.0;  // within which evidence does not tell two hypotheses apart; chosen
 };
@@ -29,6 +29,7 @@ struct AnnealOptions {
   int localisations = 128;        // of a view looked at; measured
   int most_localisations = 400;   // of a view that make the density; measured
   int most_judging = 80;          // of a view that judge it; chosen
+  int folds = 4;                  // of the views: one is judged under the density of the others; chosen
   double unit_share = 0.5;        // of them that one asymmetric unit of a group keeps at least; measured
   int most_rotations = 60000;     // of a grid that a prior thins; chosen
   int first_localisations = 64;   // in the first half of the sweeps; measured
@@ -74,6 +75,7 @@ struct SymmetryOptions {
   int views = 200;                // that take part; measured
   int sweeps = 10;                // of a trial; measured
   double first_width = 0.09, first_beta = 0.35, narrowing = 0.6;  // of a trial; measured
+  int draws = 4;  // of what judges a trial; measured: one does not tell 8 from 7
   double means_standard_errors = 4;  // that a group may cost as a means, before it is tested; chosen
   double means_loss = 0.25;    // and nat a localisation that it may cost at all; measured: pores .05 to .15
   int relabellings = 2;        // tries to tell the images of a unit apart; chosen
@@ -103,6 +105,7 @@ struct RefineOptions {
   int rotations = 2304;              // of the search grid; exhaustive: 50,000 (the paper's)
   int planar_rotations = 180;        // exhaustive: 720
   int basins = 8;                    // refined for every view (the paper's M); measured
+  double lookup_doubt = 14;          // nat below the best by look-ups, from which no mode is refined; chosen
   int search_localisations = 128;    // of a view looked at in a search; measured
   double shift = 0.10, step = 0.06;  // of a search's translations; measured
   double planar_shift = 0.3;         // the same in the plane, where missing labels move the centre; measured

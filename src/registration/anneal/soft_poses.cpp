@@ -22,7 +22,7 @@ constexpr double kTiltReach = 2.6;         // standard deviations of the tilt pr
 
 double geometric(double first, double last, double t) { return first * std::pow(last / first, t); }
 
-LookupPoints points_of(const View& view, const std::vector<std::uint32_t>& subset, std::size_t most) {
+LookupPoints lookup_points(const View& view, const std::vector<std::uint32_t>& subset, std::size_t most) {
   LookupPoints out;
   for (std::size_t k = 0; k < std::min(most, subset.size()); ++k)
     out.add(view.points.col(static_cast<Eigen::Index>(subset[k])));
@@ -187,18 +187,15 @@ SoftAnnealer::SoftAnnealer(const Problem& problem, std::vector<int> which, const
       options_(options),
       prior_(prior),
       frame_(options.reach, problem.planar() ? options.planar_voxel : options.voxel, problem.planar()),
-      all_(problem.size()),
-      fitted_(problem.size()),
-      judging_(problem.size()) {
+      all_(points_of(problem.sampled, options.most_localisations)) {}
+
+SoftAnnealer::Points SoftAnnealer::points_of(const Subsets& subsets, int most) const {
+  Points out(problem_.size());
   parallel_for(which_.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(which_[k]);
-    all_[i] = points_of(problem.views.view[i], problem.sampled[i],
-                        static_cast<std::size_t>(options.most_localisations));
-    fitted_[i] = points_of(problem.views.view[i], problem.fitted[i],
-                           static_cast<std::size_t>(options.most_localisations));
-    judging_[i] =
-        points_of(problem.views.view[i], problem.held_out[i], static_cast<std::size_t>(options.most_judging));
+    out[i] = lookup_points(problem_.views.view[i], subsets[i], static_cast<std::size_t>(most));
   });
+  return out;
 }
 
 SoftState SoftAnnealer::random_start(std::uint64_t key) const {
@@ -240,27 +237,29 @@ SoftState SoftAnnealer::from_poses(const std::vector<SoftPose>& pose, const std:
   return state;
 }
 
-void SoftAnnealer::fuse(const Points& points, double width, SoftState& state) const {
+VoxelCounts SoftAnnealer::counts_of(const Points& points, const std::vector<int>& which,
+                                    const SoftState& state) const {
   constexpr std::uint32_t kWhole = 48;  // weight of a view: divisible by the usual numbers of samples
   std::vector<Eigen::Matrix3f> images = {Eigen::Matrix3f::Identity()};
   for (std::size_t g = 1; g < state.group.size(); ++g) images.push_back(state.group[g].cast<float>());
-  VoxelCounts zero(frame_);
-  const VoxelCounts counts =
-      ordered_sum(which_.size(), kDepositViews, zero, [&](std::size_t b, std::size_t e) {
-        VoxelCounts some(frame_);
-        for (std::size_t v = b; v < e; ++v) {
-          const auto i = static_cast<std::size_t>(which_[v]);
-          const auto& samples = state.sample[i];
-          if (samples.empty()) continue;
-          const std::uint32_t weight = std::max(1u, kWhole / static_cast<std::uint32_t>(samples.size()));
-          // Under a group fewer samples say as much: each comes with its images.
-          const std::size_t step = std::clamp<std::size_t>(images.size() / 4, 1, samples.size());
-          for (std::size_t k = 0; k < samples.size(); k += step)
-            for (const Eigen::Matrix3f& g : images)
-              some.add(points[i], g * samples[k].rotation, g * samples[k].translation, weight);
-        }
-        return some;
-      });
+  return ordered_sum(which.size(), kDepositViews, VoxelCounts(frame_), [&](std::size_t b, std::size_t e) {
+    VoxelCounts some(frame_);
+    for (std::size_t v = b; v < e; ++v) {
+      const auto i = static_cast<std::size_t>(which[v]);
+      const auto& samples = state.sample[i];
+      if (samples.empty()) continue;
+      const std::uint32_t weight = std::max(1u, kWhole / static_cast<std::uint32_t>(samples.size()));
+      // Under a group fewer samples say as much: each comes with its images.
+      const std::size_t step = std::clamp<std::size_t>(images.size() / 4, 1, samples.size());
+      for (std::size_t k = 0; k < samples.size(); k += step)
+        for (const Eigen::Matrix3f& g : images)
+          some.add(points[i], g * samples[k].rotation, g * samples[k].translation, weight);
+    }
+    return some;
+  });
+}
+
+void SoftAnnealer::draw_density(const VoxelCounts& counts, double width, SoftState& state) const {
   DensityGrid density(counts);
   density.blur(width);
   density.normalise();
@@ -364,7 +363,8 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
   return found;
 }
 
-void SoftAnnealer::draw_poses(const Points& points, const Sweep& sweep, SoftState& state) const {
+void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& which, const Sweep& sweep,
+                              SoftState& state) const {
   const bool planar = problem_.planar();
   KeyedRandom turns(problem_.seed, sweep.key, kGridStage);
   std::vector<Eigen::Matrix3f> grid;
@@ -399,8 +399,8 @@ void SoftAnnealer::draw_poses(const Points& points, const Sweep& sweep, SoftStat
     centre = (mean / static_cast<double>(state.group.size())).cast<float>() * centre;
   }
   if (planar) centre.z() = 0;
-  parallel_for(which_.size(), [&](std::size_t k) {
-    const auto i = static_cast<std::size_t>(which_[k]);
+  parallel_for(which.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(which[k]);
     const LookupPoints& all = points[i];
     if (all.count == 0) return;
     KeyedRandom random(problem_.seed, i + (sweep.key << 32), kPoseStage);
@@ -456,7 +456,7 @@ void SoftAnnealer::continue_under(const AnnealStage& stage, std::uint64_t key, S
     const double g = std::min(1.0, f / stage.narrowing);
     const bool early = stage.from_nothing && f < 0.5;
     draw_poses(
-        all_,
+        all_, which_,
         {geometric(stage.first_beta, stage.last_beta, g), early ? options_.rotations / 2 : options_.rotations,
          early ? options_.first_localisations : options_.localisations,
          key * 1024 + static_cast<std::uint64_t>(t)},
@@ -465,28 +465,58 @@ void SoftAnnealer::continue_under(const AnnealStage& stage, std::uint64_t key, S
   }
 }
 
-Evidence SoftAnnealer::judge(SoftState state, std::uint64_t key) const {
-  const double width = state.width;
-  fuse(fitted_, width, state);
+Evidence SoftAnnealer::judge(SoftState state, std::uint64_t key, const Problem& drawn) const {
+  const Points fitted = points_of(drawn.fitted, options_.most_localisations),
+               judging = points_of(drawn.held_out, options_.most_judging);
+  const auto folds = static_cast<std::size_t>(options_.folds);
+  std::vector<std::vector<int>> members(folds);
+  for (std::size_t k = 0; k < which_.size(); ++k) members[k % folds].push_back(which_[k]);
+  // A view stays where its own localisations in the template hold it, and what judges brought it there: it is
+  // posed and judged under a template of other views.
+  std::vector<VoxelCounts> counts;
+  const auto under_others = [&](std::size_t f, const SoftState& poses) {
+    VoxelCounts others(frame_);
+    for (std::size_t g = 0; g < folds; ++g)
+      if (g != f) others += counts[g];
+    SoftState out = poses;
+    draw_density(others, poses.width, out);
+    return out;
+  };
+  const auto count = [&] {
+    counts.clear();
+    for (const std::vector<int>& m : members) counts.push_back(counts_of(fitted, m, state));
+  };
   for (std::uint64_t t = 0; t < 2; ++t) {
-    draw_poses(fitted_,
-               {options_.last_beta, options_.rotations, options_.localisations, key * 1024 + 512 + t}, state);
-    fuse(fitted_, width, state);
+    count();
+    if (t == 0) state.sample.assign(problem_.size(), {});
+    for (std::size_t f = 0; f < folds; ++f) {
+      SoftState one = under_others(f, state);
+      draw_poses(fitted, members[f],
+                 {options_.last_beta, options_.rotations, options_.localisations, key * 1024 + 512 + t}, one);
+      for (const int v : members[f]) {
+        const auto i = static_cast<std::size_t>(v);
+        state.sample[i] = std::move(one.sample[i]), state.best[i] = one.best[i];
+      }
+    }
   }
-  const LogVolume volume(state.density, state.outlier_fraction, outlier_density(problem_.planar()));
+  count();
   Evidence out(which_.size(), NAN);
-  parallel_for(which_.size(), [&](std::size_t k) {
-    const auto i = static_cast<std::size_t>(which_[k]);
-    const LookupPoints& points = judging_[i];
-    if (points.count == 0 || state.sample[i].empty()) return;
-    std::vector<double> score;
-    for (const SoftPose& p : state.sample[i])
-      score.push_back(static_cast<double>(volume.score(points, p.rotation, p.translation)));
-    const double top = *std::max_element(score.begin(), score.end());
-    double sum = 0;
-    for (const double s : score) sum += std::exp(s - top);
-    out[k] = (top + std::log(sum / static_cast<double>(score.size()))) / points.count;
-  });
+  for (std::size_t f = 0; f < folds; ++f) {
+    const SoftState one = under_others(f, state);
+    const LogVolume volume(one.density, one.outlier_fraction, outlier_density(problem_.planar()));
+    parallel_for(members[f].size(), [&](std::size_t m) {
+      const auto i = static_cast<std::size_t>(members[f][m]);
+      const LookupPoints& points = judging[i];
+      if (points.count == 0 || state.sample[i].empty()) return;
+      std::vector<double> score;
+      for (const SoftPose& p : state.sample[i])
+        score.push_back(static_cast<double>(volume.score(points, p.rotation, p.translation)));
+      const double top = *std::max_element(score.begin(), score.end());
+      double sum = 0;
+      for (const double s : score) sum += std::exp(s - top);
+      out[m * folds + f] = (top + std::log(sum / static_cast<double>(score.size()))) / points.count;
+    });
+  }
   return out;
 }
 

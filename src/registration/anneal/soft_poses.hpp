@@ -63,15 +63,20 @@ class SoftAnnealer {
   SoftState from_poses(const std::vector<SoftPose>& pose, const std::vector<int>& posed, double width) const;
 
   /// The density of the samples, blurred by `width`, symmetric under the state's group.
-  void fuse(double width, SoftState& state) const { fuse(all_, width, state); }
+  void fuse(double width, SoftState& state) const {
+    draw_density(counts_of(all_, which_, state), width, state);
+  }
   /// From the state's samples.
   void anneal(const AnnealStage& stage, std::uint64_t key, SoftState& state) const;
   /// From the state's density, whatever its samples are.
   void continue_under(const AnnealStage& stage, std::uint64_t key, SoftState& state) const;
 
   /// Log of the mean over samples of the density of held-out localisations, per localisation; one a view of
-  /// `which`. Poses and density are first drawn again from the fitted localisations alone: two sweeps.
-  Evidence judge(SoftState state, std::uint64_t key) const;
+  /// `which`. Poses are first drawn again, in two sweeps, from the fitted localisations alone, under the
+  /// density of other views' fitted ones.
+  Evidence judge(const SoftState& state, std::uint64_t key) const { return judge(state, key, problem_); }
+  /// The same by what judges in `drawn`, the problem with other bursts held out.
+  Evidence judge(SoftState state, std::uint64_t key, const Problem& drawn) const;
 
   const std::vector<int>& which() const { return which_; }
   const VoxelFrame& frame() const { return frame_; }
@@ -82,20 +87,23 @@ class SoftAnnealer {
   std::vector<Draw> candidates(const Looked& view, const std::vector<Eigen::Matrix3f>& grid, double spacing,
                                KeyedRandom& random) const;
   using Points = std::vector<LookupPoints>;  // of every view of the problem
-  void fuse(const Points& points, double width, SoftState& state) const;
+  Points points_of(const Subsets& subsets, int most) const;
+  VoxelCounts counts_of(const Points& points, const std::vector<int>& which, const SoftState& state) const;
+  void draw_density(const VoxelCounts& counts, double width, SoftState& state) const;
   struct Sweep {
     double beta;
     int rotations, localisations;
     std::uint64_t key;
   };
-  void draw_poses(const Points& points, const Sweep& sweep, SoftState& state) const;
+  void draw_poses(const Points& points, const std::vector<int>& which, const Sweep& sweep,
+                  SoftState& state) const;
 
   const Problem& problem_;
   std::vector<int> which_;
   AnnealOptions options_;
   PosePrior prior_;
   VoxelFrame frame_;
-  Points all_, fitted_, judging_;
+  Points all_;
 };
 
 }  // namespace polar

@@ -7,12 +7,8 @@ namespace polar {
 namespace {
 
 // More are looked at nowhere: a particle of so many places is dense, and a share of it judges well.
-constexpr std::size_t kMostFirstMembers = 600;
-
-struct FirstMember {
-  Eigen::Vector3f at;
-  Eigen::Matrix3f precision;  // of the difference of two localisations with this covariance
-};
+constexpr int kMostBursts = 600;
+constexpr int kCentrings = 3;  // of a burst: its first member may lie at its rim
 
 Eigen::Matrix3f matrix_of(const Symmetric3& c, bool planar) {
   Eigen::Matrix3f m;
@@ -23,23 +19,31 @@ Eigen::Matrix3f matrix_of(const Symmetric3& c, bool planar) {
 
 std::vector<int> told_apart(const Eigen::Matrix3Xf& points, const std::vector<Symmetric3>& covariance,
                             const std::vector<std::uint32_t>& order, double distance, bool planar) {
+  std::vector<Eigen::Matrix3f> precision;
+  for (const Symmetric3& c : covariance) precision.push_back(matrix_of(c, planar).inverse());
   std::vector<int> burst(covariance.size(), -1);
-  std::vector<FirstMember> first;
+  std::vector<std::uint32_t> left = order, member, rest;
   const auto reach = static_cast<float>(distance * distance);
-  for (const std::uint32_t j : order) {
-    const Eigen::Vector3f x = points.col(static_cast<Eigen::Index>(j));
-    int nearest = -1;
-    float least = reach;
-    for (std::size_t f = 0; f < first.size(); ++f) {
-      const Eigen::Vector3f d = x - first[f].at;
-      const float q = d.dot(first[f].precision * d);
-      if (q < least) least = q, nearest = static_cast<int>(f);
+  for (int b = 0; b < kMostBursts && !left.empty(); ++b) {
+    Eigen::Vector3f centre = points.col(static_cast<Eigen::Index>(left.front()));
+    float variance = 2;  // of a localisation about the centre, in its own
+    for (int step = 0; step <= kCentrings; ++step) {
+      member.clear(), rest.clear();
+      Eigen::Matrix3f total = Eigen::Matrix3f::Zero();
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      for (const std::uint32_t j : left) {
+        const Eigen::Vector3f x = points.col(static_cast<Eigen::Index>(j)), d = x - centre;
+        const bool near = d.dot(precision[j] * d) < reach * variance;
+        (near ? member : rest).push_back(j);
+        if (near) total += precision[j], sum += precision[j] * x;
+      }
+      if (member.size() < 2) break;
+      centre = total.inverse() * sum;
+      variance = 1 + 1 / static_cast<float>(member.size());
     }
-    if (nearest < 0 && first.size() < kMostFirstMembers) {
-      nearest = static_cast<int>(first.size());
-      first.push_back({x, matrix_of(covariance[j], planar).inverse() / 2});
-    }
-    burst[j] = nearest;
+    if (member.empty()) member.push_back(left.front()), rest.assign(left.begin() + 1, left.end());
+    for (const std::uint32_t j : member) burst[j] = b;
+    left.swap(rest);
   }
   return burst;
 }

@@ -12,6 +12,17 @@ double mean_evidence(const Evidence& evidence) {
   return n > 0 ? sum / n : 0;
 }
 
+Evidence mean_over(const std::vector<Evidence>& draws) {
+  Evidence out(draws.empty() ? 0 : draws.front().size(), NAN);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    double sum = 0, n = 0;
+    for (const Evidence& e : draws)
+      if (std::isfinite(e[i])) sum += e[i], ++n;
+    if (n > 0) out[i] = sum / n;
+  }
+  return out;
+}
+
 Comparison compare(const Evidence& a, const Evidence& b) {
   Comparison out;
   double sum = 0, squares = 0;

@@ -12,6 +12,10 @@ using Evidence = std::vector<double>;
 /// Mean over the views that say something; 0 of none.
 double mean_evidence(const Evidence& evidence);
 
+/// Of the same views by several draws of what judges: each view's mean over the draws where it says
+/// something.
+Evidence mean_over(const std::vector<Evidence>& draws);
+
 /// How much better `b` is than `a`: mean of the paired differences and its standard error over views.
 struct Comparison {
   double gain = 0, standard_error = 0;

@@ -13,7 +13,7 @@ namespace polar {
 
 namespace {
 
-constexpr std::uint32_t kShuffleStage = 20, kThinningStage = 25;
+constexpr std::uint32_t kShuffleStage = 20, kThinningStage = 25, kHeldOutStage = 26;
 
 // One number that is none would spoil every sum over all views.
 bool is_finite(const View& view) {
@@ -50,48 +50,55 @@ std::vector<bool> judging_bursts(const std::vector<int>& burst, const std::vecto
 Problems make_problems(const Views& views, const EvidenceOptions& options, std::uint64_t seed,
                        const NoiseModel& noise) {
   const std::size_t n = views.view.size();
-  Problem plain{views, {}, {}, {}, {}, {}, {}, false, noise, seed, 0};
+  Problem plain{views, {}, {}, {}, {}, {}, {}, {}, false, noise, seed, 0};
   plain.noise.planar = views.planar;
-  plain.axes.resize(n), plain.shuffled.resize(n), plain.sampled.resize(n), plain.fitted.resize(n),
-      plain.held_out.resize(n);
+  plain.axes.assign(n, Eigen::Vector3f::UnitZ());
+  for (auto* lists : {&plain.shuffled, &plain.sampled, &plain.fitted, &plain.held_out}) lists->resize(n);
+  plain.burst.resize(n);
   Problem thinned = plain;
   thinned.crowded = true;
   parallel_for(n, [&](std::size_t i) {
     const View& view = views.view[i];
-    plain.axes[i] = Eigen::Vector3f::UnitZ();
     if (!is_finite(view)) return;  // nothing of it is used, and the others go on
     plain.axes[i] = uncertainty_axis(view, views.planar);
     const std::vector<double> weight = even_weights(view.points, kEvennessReach);
     thinned.shuffled[i] = sampling_order(weight, KeyedRandom(seed, i, kThinningStage));
     plain.shuffled[i] =
         sampling_order(std::vector<double>(weight.size(), 1.0), KeyedRandom(seed, i, kShuffleStage));
-    const std::vector<int> burst =
-        bursts(view, plain.axes[i], plain.noise, plain.shuffled[i], options.burst_distance);
-    const std::vector<bool> judges = judging_bursts(burst, plain.shuffled[i], options.held_out_share);
-    const auto is_held_out = [&](std::uint32_t j) {
-      return burst[j] >= 0 && judges[static_cast<std::size_t>(burst[j])];
-    };
-    std::vector<int> heard(judges.size(), 0);
-    for (const std::uint32_t j : plain.shuffled[i]) {
-      if (!is_held_out(j))
-        plain.fitted[i].push_back(j);
-      else if (heard[static_cast<std::size_t>(burst[j])]++ < options.most_of_burst)
-        plain.held_out[i].push_back(j);
-    }
+    plain.burst[i] = bursts(view, plain.axes[i], plain.noise, plain.shuffled[i], options.burst_distance);
     const auto even = static_cast<std::size_t>(std::ceil(std::accumulate(weight.begin(), weight.end(), 0.0)));
     plain.sampled[i] = plain.shuffled[i];
     thinned.sampled[i] = thinned.shuffled[i];
     thinned.sampled[i].resize(std::min(even, weight.size()));
-    for (std::size_t k = 0; k < thinned.sampled[i].size(); ++k)
-      if (!is_held_out(thinned.shuffled[i][k])) thinned.fitted[i].push_back(thinned.shuffled[i][k]);
   });
   for (std::size_t i = 0; i < n; ++i) {
     plain.all.push_back(static_cast<int>(i));
     plain.localisations += static_cast<double>(views.view[i].covariance.size());
   }
-  thinned.axes = plain.axes, thinned.held_out = plain.held_out;
+  thinned.axes = plain.axes, thinned.burst = plain.burst;
   thinned.all = plain.all, thinned.localisations = plain.localisations;
+  hold_out(options, 0, plain);
+  hold_out(options, 0, thinned);
   return {std::move(thinned), std::move(plain)};
+}
+
+void hold_out(const EvidenceOptions& options, std::uint64_t draw, Problem& problem) {
+  parallel_for(problem.size(), [&](std::size_t i) {
+    const std::vector<int>& burst = problem.burst[i];
+    const std::vector<std::uint32_t> order =
+        random_order(burst.size(), KeyedRandom(problem.seed, i + (draw << 32), kHeldOutStage));
+    const std::vector<bool> judges = judging_bursts(burst, order, options.held_out_share);
+    const auto is_held_out = [&](std::uint32_t j) {
+      return burst[j] >= 0 && judges[static_cast<std::size_t>(burst[j])];
+    };
+    problem.fitted[i].clear(), problem.held_out[i].clear();
+    for (const std::uint32_t j : problem.sampled[i])
+      if (!is_held_out(j)) problem.fitted[i].push_back(j);
+    std::vector<int> heard(judges.size(), 0);
+    for (const std::uint32_t j : order)
+      if (is_held_out(j) && heard[static_cast<std::size_t>(burst[j])]++ < options.most_of_burst)
+        problem.held_out[i].push_back(j);
+  });
 }
 
 std::vector<int> evenly(const std::vector<int>& views, std::size_t most) {

@@ -19,6 +19,7 @@ struct Problem {
   Subsets sampled;   // those that templates are fitted to once nothing is judged; the first are a sample
   Subsets fitted;    // of these, the bursts that templates are fitted to while something is judged
   Subsets held_out;  // of the other bursts, a few localisations of each: they judge
+  std::vector<std::vector<int>> burst;  // of every localisation (bursts.hpp)
   std::vector<int> all;
   // Samples are thinned because strands are expected: centres need the support of many views.
   bool crowded = false;
@@ -41,6 +42,9 @@ struct Problems {
 /// Localisations that are held out are the same in both.
 Problems make_problems(const Views& views, const EvidenceOptions& options, std::uint64_t seed,
                        const NoiseModel& noise = {});
+
+/// Other bursts judge: those of this draw, by the seed of the problem. The same in both problems of a set.
+void hold_out(const EvidenceOptions& options, std::uint64_t draw, Problem& problem);
 
 /// At most `most` of them, evenly through the list: neighbours may share a field of view.
 std::vector<int> evenly(const std::vector<int>& views, std::size_t most);

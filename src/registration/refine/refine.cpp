@@ -92,6 +92,7 @@ void Refiner::search(const Subsets& subsets, Fit& fit) const {
   draw_no_sharper_than(options_.search_width, noise);
   SearchAgainOptions o;
   o.basins = options_.basins;
+  o.lookup_doubt = options_.lookup_doubt;
   o.group = fit.group;
   o.most_localisations = options_.search_localisations;
   o.grid.translation = axis_shifts(

@@ -40,6 +40,11 @@ class Refiner {
 
   /// A template under these poses, at the first width.
   Fit begin(std::vector<Pose> pose, const NoiseModel& noise, const RotationGroup& group) const;
+  /// The same with its evidence.
+  Fit judged(Fit fit) const {
+    fit.evidence = judge(fit);
+    return fit;
+  }
   /// Rounds until nothing is gained; keeps the best.
   Fit rounds(Fit fit, Progress& progress) const;
   /// Narrower, without a search, as long as evidence gains.

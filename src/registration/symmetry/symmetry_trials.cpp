@@ -51,6 +51,10 @@ class Trials {
         similarity_(coarse.density, o_.similarity_blur) {
     // Poses of all views that take part, under the template of those that competed.
     annealer_.continue_under(stage(1), 1990, coarse_);
+    for (int draw = 0; draw < o_.draws; ++draw) {
+      drawn_.push_back(problem);
+      if (draw > 0) hold_out(options_.evidence, static_cast<std::uint64_t>(draw), drawn_.back());
+    }
   }
 
   /// Groups that the coarse template hints at, C1 first.
@@ -126,8 +130,9 @@ class Trials {
   Trial annealed(const std::string& group, double similarity, SoftState state, std::uint64_t key) {
     state.group = rotations_of(group);
     annealer_.anneal(stage(o_.sweeps), key, state);
-    Evidence evidence = annealer_.judge(state, key);
-    return {group, similarity, std::move(state), std::move(evidence)};
+    std::vector<Evidence> draw;
+    for (const Problem& drawn : drawn_) draw.push_back(annealer_.judge(state, key, drawn));
+    return {group, similarity, std::move(state), mean_over(draw)};
   }
 
   const Problem& problem_;
@@ -136,6 +141,7 @@ class Trials {
   SoftAnnealer annealer_;
   SoftState coarse_;
   SelfSimilarity similarity_;
+  std::vector<Problem> drawn_;  // the problem, other bursts held out in each
 };
 
 std::size_t best_of(const std::vector<Trial>& trials) {
@@ -155,22 +161,25 @@ bool contains(const std::string& outer, const std::string& inner) {
   return divides(fold_of(inner), fold_of(outer)) && (inner[0] == 'C' || outer[0] == 'D');
 }
 
-// The best one, and what contains it as long as that costs no more than the error of the evidence.
-std::size_t largest_free(const std::vector<Trial>& trials, const EngineOptions& options) {
-  const std::size_t best = best_of(trials);
+// Whether it costs no more against the best than the error of the evidence.
+bool is_free(const Trial& trial, const Trial& best, const EngineOptions& options) {
   // That a structure is symmetric at all is tested again on the exact template, so it may cost more here.
   const double tolerance =
-      trials[best].group == "C1" ? options.symmetry.means_standard_errors : options.evidence.standard_errors;
-  const auto is_free = [&](std::size_t k) {
-    const Comparison c = compare(trials[best].evidence, trials[k].evidence);
-    return c.better_by(-tolerance) && c.gain > -options.symmetry.means_loss;
-  };
+      best.group == "C1" ? options.symmetry.means_standard_errors : options.evidence.standard_errors;
+  const Comparison c = compare(best.evidence, trial.evidence);
+  return c.better_by(-tolerance) && c.gain > -options.symmetry.means_loss;
+}
+
+// The best one, and what contains it as long as that is free.
+std::size_t largest_free(const std::vector<Trial>& trials, const EngineOptions& options) {
+  const std::size_t best = best_of(trials);
   std::size_t chosen = best;
   for (bool grown = true; grown;) {
     grown = false;
     std::size_t next = chosen;
     for (std::size_t k = 0; k < trials.size(); ++k)
-      if (k != chosen && contains(trials[k].group, trials[chosen].group) && is_free(k) &&
+      if (k != chosen && contains(trials[k].group, trials[chosen].group) &&
+          is_free(trials[k], trials[best], options) &&
           (next == chosen || mean_evidence(trials[k].evidence) > mean_evidence(trials[next].evidence)))
         next = k;
     if (next != chosen) chosen = next, grown = true;
@@ -193,7 +202,7 @@ RotationGroup rotations_of(const std::string& group) {
 SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions& options,
                                const SoftState& coarse, const std::string& asked, Progress& progress) {
   const SymmetryOptions& o = options.engine.symmetry;
-  SymmetryChoice out{"C1", coarse, {}, false};
+  SymmetryChoice out{"C1", coarse, {}, {}, false};
   Trials all(problem, options, coarse);
   const bool asked_dihedral = !asked.empty() && asked[0] == 'D';
   const std::string cyclic = asked_dihedral ? "C" + asked.substr(1) : asked;
@@ -209,10 +218,13 @@ SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions
     add(all.run(f, key));
   }
   if (!problem.planar()) {
-    // Across the axes that are free, the largest first, and across one that was asked for.
-    const std::size_t free = largest_free(trials, options.engine);
-    const bool axis_found = is_cyclic(trials[free].group);
-    if (axis_found) add(all.dihedral(trials[free], key));
+    // Across every axis that is free, since a cyclic group alone hardly tells orders apart, and across one
+    // that was asked for.
+    const std::size_t cyclic_trials = trials.size(), best = best_of(trials);
+    const bool axis_found = is_cyclic(trials[largest_free(trials, options.engine)].group);
+    for (std::size_t t = 0; axis_found && t < cyclic_trials && !progress.cancelled(); ++t)
+      if (is_cyclic(trials[t].group) && (t == best || is_free(trials[t], trials[best], options.engine)))
+        add(all.dihedral(trials[t], key));
     if (asked_dihedral && named(trials, asked) == nullptr) add(all.dihedral(*named(trials, cyclic), key));
   }
   const std::size_t k = largest_free(trials, options.engine);
@@ -228,6 +240,11 @@ SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions
   const Comparison c = compare(plain, chosen.evidence);
   out.group = chosen.group;
   out.state = chosen.state;
+  const std::size_t best = best_of(trials);
+  for (std::size_t t = 1; asked.empty() && out.group != "C1" && t < trials.size(); ++t)
+    if (!contains(trials[t].group, out.group) && !contains(out.group, trials[t].group) &&
+        is_free(trials[t], trials[best], options.engine))
+      out.rival.push_back({trials[t].group, trials[t].state});
   out.report.asked = !asked.empty();
   out.report.group = out.group;
   out.report.gain = c.gain, out.report.gain_std = c.standard_error;

@@ -15,7 +15,12 @@ struct SymmetryChoice {
   std::string group = "C1";  // of the largest group that costs no more than the evidence's error
   SoftState state;           // annealed under it, in the group's own frame
   Symmetry report;
-  bool continuous = false;  // the highest order that is tried cannot be told from the next lower one
+  struct Rival {
+    std::string group;
+    SoftState state;
+  };
+  std::vector<Rival> rival;  // as good as the evidence tells, and neither contains nor is contained
+  bool continuous = false;   // the highest order that is tried cannot be told from the next lower one
 };
 
 /// `coarse`: of a competition. Under `asked` (a group's name, or empty) that group is chosen whatever the
