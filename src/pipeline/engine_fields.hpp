@@ -68,6 +68,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("axial_hint", o.symmetry.axial_hint);
     s.field("highest_order", o.symmetry.highest_order);
     s.field("orders", o.symmetry.orders);
+    s.field("burst_distance", o.symmetry.burst_distance);
     s.field("least_significance", o.symmetry.least_significance);
     s.field("views", o.symmetry.views);
     s.field("sweeps", o.symmetry.sweeps);

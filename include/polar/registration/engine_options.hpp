@@ -71,6 +71,7 @@ struct SymmetryOptions {
   double axial_hint = 0.4;  // the same of any turn about an axis, from which harmonics tell; measured
   int highest_order = 12;         // of an axis tried; chosen
   int orders = 3;                 // of an axis, most significant first, that are tried; measured
+  double burst_distance = 1.5;    // Mahalanobis, of bursts whose azimuths are compared; measured
   double least_significance = 1;  // of a harmonic, standard errors over views; chosen
   int views = 200;                // that take part; measured
   int sweeps = 10;                // of a trial; measured

@@ -39,15 +39,14 @@ double pair_mean(const std::map<int, std::vector<Phasor>>& of_burst) {
 
 }  // namespace
 
-std::vector<AxialHarmonic> axial_harmonics(const Problem& problem, const EvidenceOptions& options,
-                                           const std::vector<SoftPose>& pose, const std::vector<int>& which,
-                                           int highest) {
+std::vector<AxialHarmonic> axial_harmonics(const Problem& problem, const SymmetryOptions& options,
+                                           const std::vector<SoftPose>& pose, const std::vector<int>& which) {
   std::vector<std::vector<double>> mean(which.size());  // of every view, by order
   parallel_for(which.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(which[k]);
     const std::vector<int> burst = bursts(problem.views.view[i], problem.axes[i], problem.noise,
                                           problem.sampled[i], options.burst_distance);
-    for (int order = 2; order <= highest; ++order) {
+    for (int order = 1; order <= options.highest_order + 1; ++order) {
       std::map<int, std::vector<Phasor>> of_burst;
       for (const std::uint32_t j : problem.sampled[i]) {
         const Phasor p = phasor(problem, i, j, pose[i], order);
@@ -57,10 +56,12 @@ std::vector<AxialHarmonic> axial_harmonics(const Problem& problem, const Evidenc
     }
   });
   std::vector<AxialHarmonic> out;
-  for (int order = 2; order <= highest; ++order) {
+  for (int order = 2; order <= options.highest_order; ++order) {
     const Evidence nothing(which.size(), 0.0);
+    // What bursts share or keep from each other raises or lowers neighbouring orders alike.
     Evidence found;
-    for (const auto& m : mean) found.push_back(m[static_cast<std::size_t>(order - 2)]);
+    const auto n = static_cast<std::size_t>(order - 1);
+    for (const auto& m : mean) found.push_back(m[n] - (m[n - 1] + m[n + 1]) / 2);
     const Comparison c = compare(nothing, found);
     out.push_back({order, c.standard_error > 0 ? c.gain / c.standard_error : 0});
   }

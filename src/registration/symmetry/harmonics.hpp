@@ -11,16 +11,15 @@ namespace polar {
 
 struct AxialHarmonic {
   int order = 0;
-  /// Mean over views of the mean of cos(order (phi_j - phi_k)) over localisations of different bursts, in
-  /// standard errors over views.
+  /// Mean over views of the mean of cos(order (phi_j - phi_k)) over localisations of different bursts, less
+  /// that of the two neighbouring orders, in standard errors over views.
   double significance = 0;
 };
 
-/// Orders 2 ... highest, most significant first. Poses are template_from_view with the axis along z through
-/// the origin.
-std::vector<AxialHarmonic> axial_harmonics(const Problem& problem, const EvidenceOptions& options,
-                                           const std::vector<SoftPose>& pose, const std::vector<int>& which,
-                                           int highest);
+/// Orders 2 to the highest, most significant first. Poses are template_from_view with the axis along z
+/// through the origin.
+std::vector<AxialHarmonic> axial_harmonics(const Problem& problem, const SymmetryOptions& options,
+                                           const std::vector<SoftPose>& pose, const std::vector<int>& which);
 
 /// Turns every pose about z so that its harmonic of that order has phase 0: n-fold sites then lie on each
 /// other.

@@ -69,11 +69,11 @@ class Trials {
     if (is_axial) {
       std::vector<SoftPose> pose = in_frame(axial.canonical_from_template).best;
       std::size_t taken = 0;
-      for (const AxialHarmonic& h :
-           axial_harmonics(problem_, options_.evidence, pose, annealer_.which(), o_.highest_order)) {
+      for (const AxialHarmonic& h : axial_harmonics(problem_, o_, pose, annealer_.which())) {
         axial.group = "C" + std::to_string(h.order);
-        const bool strong =
-            taken < static_cast<std::size_t>(o_.orders) && h.significance >= o_.least_significance;
+        // A trial in the plane costs next to nothing.
+        const bool strong = problem_.planar() || (taken < static_cast<std::size_t>(o_.orders) &&
+                                                  h.significance >= o_.least_significance);
         if (strong) ++taken;
         // Where no order stands out the two highest tell a body of revolution.
         const bool any_turn = taken == 0 && h.order >= o_.highest_order - 1;
