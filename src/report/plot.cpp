@@ -30,7 +30,7 @@ Axis axis_of(const std::vector<double>& values, const std::string& label) {
   const std::vector<double> sorted = sorted_finite(values);
   if (sorted.empty()) return {0, 1, label};
   const double spread = sorted.back() - sorted.front();
-  const double margin = spread > 0 ? kMargin * spread : std::max(1e-3 * std::abs(sorted.back()), 1e-6);
+  const double margin = spread > 0 ? kMargin * spread : std::max(0.1 * std::abs(sorted.back()), 1e-6);
   return {sorted.front() - margin, sorted.back() + margin, label};
 }
 

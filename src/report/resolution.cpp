@@ -83,7 +83,7 @@ void add_plane(const HalfMaps& h, std::size_t plane, const std::string& id, cons
   const double brightest = std::max(rasters[0].largest(), rasters[1].largest());
   const std::size_t particles[] = {h.first_particles, h.second_particles};
   for (std::size_t k = 0; k < 2; ++k) {
-    const std::string half = "half " + std::to_string(k + 1);
+    const std::string half = (of.empty() ? "Half " : "half ") + std::to_string(k + 1);
     s.figures.push_back({id + std::to_string(k + 1) + "-" + kNames[plane], of + half + ", " + kNames[plane],
                          picture_svg(rasters[k], heat_png(rasters[k], brightest), kNames[plane],
                                      "half map " + std::to_string(k + 1) + " of " + of +

@@ -250,6 +250,8 @@ TEST_F(Sections, ChannelsHaveAColourEach) {
   const std::string svg = figure(average_section(Subject(record_)), "projection-xy").svg;
   EXPECT_THAT(svg, HasSubstr("on-picture t0"));
   EXPECT_THAT(svg, HasSubstr(">WGA<"));
+  record_.result.superparticle.extra.back().labels.clear();  // channels that are numbers
+  EXPECT_THAT(figure(average_section(Subject(record_)), "projection-xy").svg, HasSubstr(">channel 1<"));
 }
 
 TEST_F(Sections, ToRunItAgainSaysWhatIsNotRecorded) {
