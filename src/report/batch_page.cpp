@@ -143,6 +143,11 @@ std::string batch_page(const BatchRecord& batch, const std::string& name) {
   page.set("program", utf8(batch.program));
   page.set("sentence",
            counted(batch.datasets.size(), "data set") + (words.empty() ? "" : ": " + words) + ".");
+  std::vector<std::string> failures;
+  for (const BatchDataset& d : batch.datasets)
+    if (!d.reason.empty()) failures.push_back(d.name + " " + d.state + ": " + d.reason);
+  page.set("has_failures", !failures.empty());
+  page.set("failures", text_list(failures));
   page.set("datasets", datasets_json(batch));
   page.set("script", template_text("table.js") + template_text("batch.js"));
   return filled("batch.html", page);
