@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "emitter.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 
@@ -134,6 +135,24 @@ void blend(std::vector<double>& into, const std::vector<double>& from, double sh
   for (std::size_t i = 0; i < into.size(); ++i) into[i] += share * (from[i] - into[i]);
 }
 }  // namespace
+
+std::vector<ParticleCandidates> candidates_of(
+    const smlm::LocalisationTable& t, std::size_t places,
+    const std::function<double(const Eigen::Matrix3d&, const Eigen::Vector3d&, std::size_t)>& density) {
+  const std::vector<std::vector<std::size_t>> rows = rows_of_particles(t);
+  std::vector<ParticleCandidates> particles(rows.size());
+  parallel_for(rows.size(), [&](std::size_t p) {
+    for (const std::size_t row : rows[p]) {
+      particles[p].emplace_back();
+      const Eigen::Matrix3d c = covariance(t, row);
+      const Eigen::Vector3d x(t.position_nm[row].data());
+      for (std::size_t k = 0; k < places; ++k)
+        if (const double here = density(c, x, k); here > 0)
+          particles[p].back().push_back({static_cast<std::uint32_t>(k), here});
+    }
+  });
+  return particles;
+}
 
 PlaceCounts count_labels(const std::vector<ParticleCandidates>& particles, std::size_t places,
                          double background, double background_share) {

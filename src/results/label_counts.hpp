@@ -2,10 +2,13 @@
 // sampled, so that a doubtful place counts as much as it is probable and no more.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "polar/results/labelling.hpp"
+#include "smlm/localisation_table.hpp"
 
 namespace polar::results {
 
@@ -17,6 +20,12 @@ struct Candidate {
 
 /// The candidates of every localisation of a particle; none: only the background is left.
 using ParticleCandidates = std::vector<std::vector<Candidate>>;
+
+/// Of every particle that has localisations, in the order of the particles. `density`: of a localisation with
+/// that covariance and position at that place; 0: it cannot be its.
+std::vector<ParticleCandidates> candidates_of(
+    const smlm::LocalisationTable& table, std::size_t places,
+    const std::function<double(const Eigen::Matrix3d&, const Eigen::Vector3d&, std::size_t)>& density);
 
 /// A particle's localisations come from labels and from the background. A place has a label with a
 /// probability that all places share; a label has one localisation or more, their number from a distribution

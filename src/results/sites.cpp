@@ -192,23 +192,6 @@ Model fit(const Table& t, const std::vector<Eigen::Vector3d>& start, const Volum
   } while (drop_one_of_two(m, sigma));
   return m;
 }
-
-// Which sites could have made every localisation.
-std::vector<results::ParticleCandidates> candidates_of(const Model& m, const Table& t) {
-  const std::vector<std::vector<std::size_t>> rows = results::rows_of_particles(t);
-  std::vector<results::ParticleCandidates> particles(rows.size());
-  parallel_for(rows.size(), [&](std::size_t p) {
-    for (const std::size_t row : rows[p]) {
-      particles[p].emplace_back();
-      const Eigen::Matrix3d c = results::covariance(t, row);
-      const Eigen::Vector3d x(t.position_nm[row].data());
-      for (std::size_t k = 0; k < m.site.size(); ++k)
-        if (const double density = emitter(m, c, x, k).density; density > 0)
-          particles[p].back().push_back({static_cast<std::uint32_t>(k), density});
-    }
-  });
-  return particles;
-}
 }  // namespace
 
 DiscreteSites find_sites(const Table& t, const RenderOptions& options) {
@@ -236,8 +219,11 @@ DiscreteSites find_sites(const Table& t, const RenderOptions& options) {
     s.centre_std_nm = std::hypot(sigma, s.width_nm) / std::sqrt(s.share * static_cast<double>(t.size()));
   out.site = m.site;
   out.background_share = m.background_share;
-  out.counts = results::count_labels(candidates_of(m, t), m.site.size(), m.background_density,
-                                     std::max(m.background_share, kLeastBackground));
+  const auto density_at = [&](const Eigen::Matrix3d& c, const Eigen::Vector3d& x, std::size_t k) {
+    return emitter(m, c, x, k).density;
+  };
+  out.counts = results::count_labels(results::candidates_of(t, m.site.size(), density_at), m.site.size(),
+                                     m.background_density, std::max(m.background_share, kLeastBackground));
   for (std::size_t k = 0; k < out.site.size(); ++k) {
     out.site[k].occupancy = out.counts.occupancy[k];
     out.orbit.push_back(k);

@@ -7,12 +7,11 @@
 #include "emitter.hpp"
 #include "label_counts.hpp"
 #include "polar/core/median.hpp"
-#include "polar/core/parallel.hpp"
 
 namespace polar {
 
 namespace {
-constexpr double kApart = 3;       // standard deviations between units
+constexpr double kApart = 3;        // standard deviations between units
 constexpr double kLightest = 1e-4;  // of the template: a centre that weighs less says nothing
 
 struct Unit {
@@ -70,22 +69,13 @@ UnitOccupancy occupied_units(const smlm::LocalisationTable& t, const TemplateSit
   out.reason = "its symmetric units are not far enough apart to be told from one another";
   if (!apart(units, upper_median(std::move(sigma)))) return out;
   out.reason.clear();
-  const std::vector<std::vector<std::size_t>> rows = results::rows_of_particles(t);
-  std::vector<results::ParticleCandidates> particles(rows.size());
-  parallel_for(rows.size(), [&](std::size_t p) {
-    for (const std::size_t row : rows[p]) {
-      particles[p].emplace_back();
-      const Eigen::Matrix3d c = results::covariance(t, row);
-      const Eigen::Vector3d x(t.position_nm[row].data());
-      for (std::size_t u = 0; u < units.size(); ++u) {
-        double density = 0;
-        for (const Site& s : units[u].centre)
-          density += s.share * results::emitter(t.planar, c, x, s).density;
-        if (density > 0) particles[p].back().push_back({static_cast<std::uint32_t>(u), density});
-      }
-    }
-  });
-  out.counts = results::count_labels(particles, units.size(), background, background_share);
+  const auto density = [&](const Eigen::Matrix3d& c, const Eigen::Vector3d& x, std::size_t u) {
+    double sum = 0;
+    for (const Site& s : units[u].centre) sum += s.share * results::emitter(t.planar, c, x, s).density;
+    return sum;
+  };
+  out.counts = results::count_labels(results::candidates_of(t, units.size(), density), units.size(),
+                                     background, background_share);
   return out;
 }
 
