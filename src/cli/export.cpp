@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "command.hpp"
 #include "polar/pipeline/outputs.hpp"
+#include "polar/results/registering_rows.hpp"
 #include "polar/results/result_file.hpp"
 #include "record_path.hpp"
 #include "smlm/error.hpp"
@@ -27,10 +29,19 @@ int run(const Arguments& a) {
     throw smlm::Error(smlm::Fault::io, output, "no such directory", "create it first");
   ResultRecord result = smlm::read_isolated(record, [&] { return read_result_file(record); });
   result.render.voxel_nm = a.voxel_nm;
+  // Labels of the channels that are carried along have no place in the template.
+  DiscreteSites sites;
+  const bool some = !result.render.channel_column.empty() &&
+                    std::find(a.formats.begin(), a.formats.end(), "sites") != a.formats.end();
+  if (some)
+    sites = find_sites(registering_rows(result.superparticle,
+                                        {result.render.channel_column, false, result.registering_channels}),
+                       result.render);
   std::vector<std::string> notes = result.warnings;  // what was assumed holds for every format
   for (const std::string& format : a.formats)
     for (const std::string& name :
-         write_format(format, output, {result.superparticle, result.render, result.poses}, notes))
+         write_format(format, output,
+                      {result.superparticle, result.render, result.poses, some ? &sites : nullptr}, notes))
       std::printf("%s/%s\n", output.c_str(), name.c_str());
   for (const std::string& note : notes) std::fprintf(stderr, "warning: %s\n", note.c_str());
   return 0;

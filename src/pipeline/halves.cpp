@@ -51,27 +51,43 @@ Results registered(const smlm::ParticleSet& all, const std::vector<bool>& second
   return r;
 }
 
+// Takes the poses that were found where none was accepted; whether it had to.
+bool takes_refused(Results& r) {
+  if (accepted_particles(r) > 0) return false;
+  for (RegisteredView& v : r.registration.view)
+    v.accepted = v.n_used > 0 && v.template_from_view.rotation.allFinite() &&
+                 v.template_from_view.translation.allFinite();
+  return true;
+}
+
 HalfMaps half_maps(const smlm::ParticleSet& particles, const std::vector<bool>& second,
                    const RegistrationOptions& options, Progress& progress, Checkpoint& checkpoint,
-                   const Engine& engine) {
-  const Results a = registered(particles, second, false, options, progress, checkpoint, engine);
+                   const Engine& engine, const Results* whole) {
+  Results a = registered(particles, second, false, options, progress, checkpoint, engine);
   if (progress.cancelled()) return {};
-  const Results b = registered(particles, second, true, options, progress, checkpoint, engine);
+  Results b = registered(particles, second, true, options, progress, checkpoint, engine);
   if (progress.cancelled()) return {};
-  return compare_half_maps(a, b, options.seed);
+  const bool refused_a = takes_refused(a), refused_b = takes_refused(b);
+  HalfMaps maps = compare_half_maps(a, b, options.seed, whole);
+  maps.refused = refused_a || refused_b;
+  if (refused_a) maps.first_particles = 0;
+  if (refused_b) maps.second_particles = 0;
+  if (maps.refused) maps.resolution = {};
+  return maps;
 }
 }  // namespace
 
-ResolutionReport resolve_halves(const smlm::ParticleSet& particles, const RegistrationOptions& options,
-                                Progress& progress, Checkpoint& checkpoint, const Engine& engine) {
+ResolutionReport resolve_halves(const Results& whole, const RegistrationOptions& options, Progress& progress,
+                                Checkpoint& checkpoint, const Engine& engine) {
+  const smlm::ParticleSet& particles = whole.particles;
   ResolutionReport report;
   PartOfCheckpoint data(checkpoint, "data"), noise(checkpoint, "noise");
   if (particles.particles.size() < kFewestParticles) return report;
   const std::vector<bool> second = second_half(particles, options.seed);
-  report.data = half_maps(particles, second, options, progress, data, engine);
+  report.data = half_maps(particles, second, options, progress, data, engine, &whole);
   if (progress.cancelled()) return report;
   report.noise =
-      half_maps(noise_particles(particles, options.seed), second, options, progress, noise, engine);
+      half_maps(noise_particles(particles, options.seed), second, options, progress, noise, engine, nullptr);
   return report;
 }
 

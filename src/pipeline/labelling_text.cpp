@@ -4,7 +4,7 @@
 
 namespace polar::pipeline {
 
-std::vector<std::string> labelling_lines(const DiscreteSites& sites, const std::optional<Labelling>& l) {
+std::vector<std::string> labelling_lines(const DiscreteSites& sites, const Labelling* l) {
   if (!l) return {};
   char text[200];
   std::snprintf(text, sizeof text, "labelling    %.1f %% (%.1f to %.1f) of %d %s, from %zu particles",
@@ -22,7 +22,7 @@ std::vector<std::string> labelling_lines(const DiscreteSites& sites, const std::
   return lines;
 }
 
-void add_labelling(nlohmann::json& summary, const DiscreteSites& sites, const std::optional<Labelling>& l) {
+void add_labelling(nlohmann::json& summary, const DiscreteSites& sites, const Labelling* l) {
   nlohmann::json& s = summary["sites"];
   s = {{"number", sites.site.size()}, {"reason", sites.reason}, {"background_share", sites.background_share}};
   s["hot_spots"] = hot_spots(sites);
@@ -35,7 +35,8 @@ void add_labelling(nlohmann::json& summary, const DiscreteSites& sites, const st
                           {"particles", l->particles},
                           {"labels_per_site", l->labels_per_site},
                           {"fewest_sites", l->fewest},
-                          {"dispersion", l->dispersion}};
+                          {"dispersion", l->dispersion},
+                          {"information", l->information}};
 }
 
 }  // namespace polar::pipeline

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +10,10 @@
 
 namespace polar::pipeline {
 
-/// Lines of the printed summary; none where the template is not discrete.
-std::vector<std::string> labelling_lines(const DiscreteSites& sites,
-                                         const std::optional<Labelling>& labelling);
+/// Lines of the printed summary; none where nothing is counted (null).
+std::vector<std::string> labelling_lines(const DiscreteSites& sites, const Labelling* labelling);
 
 /// The sections `sites` and `labelling` of summary.json.
-void add_labelling(nlohmann::json& summary, const DiscreteSites& sites,
-                   const std::optional<Labelling>& labelling);
+void add_labelling(nlohmann::json& summary, const DiscreteSites& sites, const Labelling* labelling);
 
 }  // namespace polar::pipeline

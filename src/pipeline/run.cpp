@@ -19,6 +19,7 @@
 #include "machine.hpp"
 #include "output_directory.hpp"
 #include "polar/core/median.hpp"
+#include "polar/core/symmetry_group.hpp"
 #include "polar/model/shipped_weights.hpp"
 #include "polar/pipeline/outputs.hpp"
 #include "polar/pipeline/version.hpp"
@@ -144,9 +145,13 @@ nlohmann::json number_or_null(double value) {
 }
 
 nlohmann::json half_maps_json(const HalfMaps& h) {
-  return {{"resolution_nm", number_or_null(h.resolution.period_nm)}, {"at_nyquist", h.resolution.at_nyquist},
-          {"particles", {h.first_particles, h.second_particles}},    {"voxel_nm", h.voxel_nm},
-          {"frequency_per_nm", h.shells.frequency_per_nm},           {"correlation", h.shells.correlation}};
+  return {{"resolution_nm", number_or_null(h.resolution.period_nm)},
+          {"at_nyquist", h.resolution.at_nyquist},
+          {"particles", {h.first_particles, h.second_particles}},
+          {"voxel_nm", h.voxel_nm},
+          {"refused", h.refused},
+          {"frequency_per_nm", h.shells.frequency_per_nm},
+          {"correlation", h.shells.correlation}};
 }
 
 std::string period(const HalfMaps& h) {
@@ -296,6 +301,7 @@ Results compute(const RunConfig& config, const std::string& hash, Progress& prog
   Results r;
   r.particles = read_particles(config, progress);
   r.channel_column = smlm::channel_column(config.read.channel);
+  r.registering_channels = config.read.channel.registering;
   pipeline::HeldBack held_back(r.particles, config.read.channel, config.read.particle_limits, progress);
   Views views = prepare_views(r.particles, {});
   RegistrationOptions options = config.registration;
@@ -309,14 +315,15 @@ Results compute(const RunConfig& config, const std::string& hash, Progress& prog
                                        options, progress);
   r.normalisation = std::move(views.normalisation);
   r.planar = views.planar;
+  r.limits = options.engine.verdict;
   r.provenance = {program_version(), run_config_text(config), config.registration.seed, hash,
                   library_versions()};
-  if (config.output.resolution == "halves" && accepted_particles(r) > 0 && !progress.cancelled())
-    r.resolution = pipeline::resolve_halves(r.particles, options, progress, checkpoint, engine);
-  if (progress.cancelled()) return r;
-  held_back.put_back(r);
   if (config.output.frame == "own" && accepted_particles(r) > 0)
     move_template(r.registration, own_frame_from_template(r.registration, r.planar));
+  if (config.output.resolution == "halves" && accepted_particles(r) > 0 && !progress.cancelled())
+    r.resolution = pipeline::resolve_halves(r, options, progress, checkpoint, engine);
+  if (progress.cancelled()) return r;
+  held_back.put_back(r);
   return r;
 }
 
@@ -325,29 +332,36 @@ struct Products {
   smlm::LocalisationTable superparticle;
   RenderOptions render;
   DiscreteSites sites;
-  std::optional<Labelling> labelling;  // where the template is discrete, or has symmetric units
 };
 
-bool any(const std::vector<int>& occupied) {
-  return std::any_of(occupied.begin(), occupied.end(), [](int n) { return n > 0; });
-}
-
 // From the symmetric units where the sites cannot be told apart.
-std::optional<Labelling> unit_labelling(const Results& r, const smlm::LocalisationTable& labels,
-                                        int labels_per_unit) {
+std::optional<LabelledPlaces> unit_labelling(const Results& r, const smlm::LocalisationTable& labels,
+                                             int labels_per_unit) {
   const FusedTemplate& fused = r.registration.fused;
   const double scale_nm = r.normalisation.scale_nm;
-  const double background = std::max(fused.outlier_fraction, kLeastBackground) * fused.outlier_density /
-                            std::pow(scale_nm, r.planar ? 2 : 3);
-  const UnitOccupancy units =
-      occupied_units(labels, template_sites(r), scale_nm * r.registration.symmetry->unit, background);
-  if (!any(units.occupied)) return std::nullopt;
-  Labelling l = labelling_efficiency(units.occupied, units.units, labels_per_unit);
-  l.of = "symmetric units";
+  const Eigen::Matrix3Xd unit_nm = scale_nm * r.registration.symmetry->unit;
+  const UnitOccupancy units = occupied_units(labels, template_sites(r), unit_nm,
+                                             fused.outlier_density / std::pow(scale_nm, r.planar ? 2 : 3),
+                                             std::max(fused.outlier_fraction, kLeastBackground));
+  if (!units.counts.any()) return std::nullopt;
+  LabelledPlaces l{labelling_efficiency(units.counts, labels_per_unit), units.counts, unit_nm};
+  l.labelling.of = "symmetric units";
   return l;
 }
 
-Products products_of(const Results& r, const RunConfig& config) {
+// Of the sites, or of the symmetric units where those cannot be told apart.
+std::optional<LabelledPlaces> labelled_places(const Results& r, const DiscreteSites& sites,
+                                              const smlm::LocalisationTable& labels, int labels_per_site) {
+  if (sites.site.empty())
+    return r.registration.symmetry ? unit_labelling(r, labels, labels_per_site) : std::nullopt;
+  if (!sites.counts.any()) return std::nullopt;
+  Eigen::Matrix3Xd place_nm(3, static_cast<Eigen::Index>(sites.site.size()));
+  for (std::size_t k = 0; k < sites.site.size(); ++k)
+    place_nm.col(static_cast<Eigen::Index>(k)) = sites.site[k].centre_nm;
+  return LabelledPlaces{labelling_efficiency(sites.counts, labels_per_site), sites.counts, place_nm};
+}
+
+Products products_of(Results& r, const RunConfig& config) {
   Products p;
   p.superparticle = superparticle(r);
   p.render = calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm);
@@ -358,11 +372,13 @@ Products products_of(const Results& r, const RunConfig& config) {
   if (!r.channel_column.empty()) registering = registering_rows(p.superparticle, config.read.channel);
   const smlm::LocalisationTable& labels = r.channel_column.empty() ? p.superparticle : registering;
   p.sites = find_sites(labels, p.render);
-  if (p.sites.site.empty() && r.registration.symmetry)
-    p.labelling = unit_labelling(r, labels, config.output.labels_per_site);
-  else if (any(p.sites.occupied))
-    p.labelling = labelling_efficiency(p.sites.occupied, static_cast<int>(p.sites.site.size()),
-                                       config.output.labels_per_site);
+  if (const auto& symmetry = r.registration.symmetry;
+      symmetry && symmetry->in_use && is_symmetry_group(symmetry->group)) {
+    Pose canonical = symmetry->canonical_from_template;
+    canonical.translation *= r.normalisation.scale_nm;
+    set_orbits(p.sites, symmetry_rotations(symmetry->group), canonical);
+  }
+  r.labelled = labelled_places(r, p.sites, labels, config.output.labels_per_site);
   return p;
 }
 
@@ -459,10 +475,11 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   const std::vector<Stranger> unlike = strangers(pose_rows(r));
   std::vector<std::string> lines =
       describe(r, config.registration.tilt_deg, unlike, config.output.directory, seconds);
-  const std::vector<std::string> labels = pipeline::labelling_lines(products.sites, products.labelling);
+  const Labelling* labelling = r.labelled ? &r.labelled->labelling : nullptr;
+  const std::vector<std::string> labels = pipeline::labelling_lines(products.sites, labelling);
   lines.insert(lines.end() - 2, labels.begin(), labels.end());
   nlohmann::json summary = summary_json(r, unlike, lines, written, seconds);
-  pipeline::add_labelling(summary, products.sites, products.labelling);
+  pipeline::add_labelling(summary, products.sites, labelling);
   smlm::write_file_atomically(directory.file(kSummary), pipeline::json_text(summary));
   std::vector<std::string> kept = written;
   kept.emplace_back(kSummary);

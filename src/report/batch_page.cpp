@@ -84,6 +84,13 @@ Figure strip(const BatchRecord& batch, const std::vector<std::string>& condition
               (intervals ? "; beside them the mean of the condition and its bootstrap interval." : ".")};
 }
 
+// As its strip is called; what has no strip goes by its name in conditions.csv.
+std::string title_of(const std::string& measure) {
+  for (const Measure& m : kMeasures)
+    if (measure == m.name) return m.title;
+  return measure;
+}
+
 Section strips_section(const BatchRecord& batch) {
   Section s{"conditions", "Conditions", {}, {}, {}};
   const std::vector<std::string> conditions = conditions_of(batch);
@@ -92,8 +99,8 @@ Section strips_section(const BatchRecord& batch) {
   Table differences{{"number", "condition", "minus", "difference", "from", "to"}, {}};
   for (const BatchMean& m : batch.means)
     if (!m.minus.empty())
-      differences.rows.push_back(
-          {m.measure, m.condition, m.minus, digits(m.mean, 4), digits(m.low, 4), digits(m.high, 4)});
+      differences.rows.push_back({title_of(m.measure), m.condition, m.minus, digits(m.mean, 4),
+                                  digits(m.low, 4), digits(m.high, 4)});
   if (!differences.rows.empty()) s.tables.push_back(differences);
   return s;
 }
@@ -104,11 +111,10 @@ std::string datasets_json(const BatchRecord& batch) {
   const auto head = [&](const char* name, bool number) {
     heads.push_back({{"name", name}, {"number", number}});
   };
-  head("data set", false), head("average", false), head("condition", false), head("state", false),
-      head("reason", false);
+  head("data set", false), head("average", false), head("condition", false), head("state", false);
   head("particles", true), head("accepted", true), head("localisations", true), head("resolution [nm]", true);
   head("place [nm]", true), head("rotation [deg]", true), head("symmetry", false), head("labelling", true);
-  head("seconds", true);
+  head("seconds", true), head("reason", false);
   const auto number = [](double v) { return rounded_json(v, 4); };
   for (const BatchDataset& d : batch.datasets) {
     json name = {{"text", d.name}};
@@ -117,11 +123,11 @@ std::string datasets_json(const BatchRecord& batch) {
         d.thumbnail_png.empty()
             ? json()
             : json({{"text", "average of " + d.name}, {"picture", png_uri(d.thumbnail_png)}});
-    rows.push_back({name, picture, d.condition, d.state, d.reason, number(value_of(d, "particles")),
+    rows.push_back({name, picture, d.condition, d.state, number(value_of(d, "particles")),
                     number(value_of(d, "accepted")), number(value_of(d, "localisations")),
                     number(value_of(d, "resolution_nm")), number(value_of(d, "translation_std_nm")),
                     number(value_of(d, "rotation_std_deg")), d.symmetry,
-                    number(value_of(d, "labelling_efficiency")), number(value_of(d, "seconds"))});
+                    number(value_of(d, "labelling_efficiency")), number(value_of(d, "seconds")), d.reason});
   }
   return script_json({{"heads", heads}, {"rows", rows}});
 }
@@ -137,6 +143,11 @@ std::string batch_page(const BatchRecord& batch, const std::string& name) {
   page.set("program", utf8(batch.program));
   page.set("sentence",
            counted(batch.datasets.size(), "data set") + (words.empty() ? "" : ": " + words) + ".");
+  std::vector<std::string> failures;
+  for (const BatchDataset& d : batch.datasets)
+    if (!d.reason.empty()) failures.push_back(d.name + " " + d.state + ": " + d.reason);
+  page.set("has_failures", !failures.empty());
+  page.set("failures", text_list(failures));
   page.set("datasets", datasets_json(batch));
   page.set("script", template_text("table.js") + template_text("batch.js"));
   return filled("batch.html", page);

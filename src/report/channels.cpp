@@ -3,7 +3,7 @@
 #include <map>
 
 #include "polar/results/results.hpp"
-#include "text.hpp"
+#include "smlm/number_text.hpp"
 
 namespace polar::report {
 
@@ -37,7 +37,7 @@ std::vector<Channel> tinted_channels(const smlm::LocalisationTable& table, const
     const std::size_t c = channels.size();
     const auto label = static_cast<std::size_t>(value);
     const bool named = !column->labels.empty() && value >= 0 && label < column->labels.size();
-    channels.push_back({named ? column->labels[label] : "channel " + digits(value, 6),
+    channels.push_back({named ? column->labels[label] : "channel " + smlm::number_text(value),
                         "t" + std::to_string(c), kTints[c], std::move(rows)});
   }
   return channels;

@@ -1,5 +1,4 @@
-// What is labelled: units of a symmetry, localisations a particle, localisations a labelled unit.
-#include <Eigen/Core>
+// What is labelled: sites or units of a symmetry, labels a particle, localisations a label and a particle.
 #include <algorithm>
 #include <cmath>
 
@@ -14,66 +13,52 @@ namespace polar::report {
 
 namespace {
 constexpr double kZ = 1.959964;  // of a normal: 95 %
-constexpr Eigen::Index kMostUnits = 60;
+constexpr std::size_t kMostPlaces = 60;
 
-// Localisations of every accepted particle that are nearest to each unit.
-struct UnitCounts {
-  std::vector<std::vector<std::size_t>> of;  // particle x unit
-};
-
-UnitCounts count_units(const RunRecord& record) {
-  const smlm::LocalisationTable& t = record.result.superparticle;
-  const Eigen::Matrix3Xd& unit = record.symmetry->unit_nm;
-  std::vector<std::vector<std::size_t>> all(record.poses.size(),
-                                            std::vector<std::size_t>(static_cast<std::size_t>(unit.cols())));
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const Eigen::Vector3d x(t.position_nm[i][0], t.position_nm[i][1], t.position_nm[i][2]);
-    Eigen::Index nearest = 0;
-    (unit.colwise() - x).colwise().squaredNorm().minCoeff(&nearest);
-    if (t.particle[i] >= 0) ++all[static_cast<std::size_t>(t.particle[i])][static_cast<std::size_t>(nearest)];
-  }
-  UnitCounts counts;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (record.poses[i].accepted) counts.of.push_back(std::move(all[i]));
-  return counts;
+// Expected numbers as bars of whole numbers, without the empty ones at the end.
+std::string expected_svg(const std::vector<double>& expected, std::size_t first, const std::string& x_label,
+                         const std::string& y_label) {
+  std::vector<double> values;
+  for (std::size_t k = first; k < expected.size(); ++k)
+    values.insert(values.end(), static_cast<std::size_t>(std::lround(expected[k])), static_cast<double>(k));
+  return histogram_svg(whole_number_histogram(values), x_label, y_label, "c1");
 }
 
-void add_units(const Subject& subject, Section& s) {
-  const UnitCounts counts = count_units(subject.record);
-  const std::size_t units = counts.of.empty() ? 0 : counts.of[0].size();
-  const auto n = static_cast<double>(counts.of.size());
-  std::vector<Bar> bars;
-  std::vector<double> labelled, blinks;
-  for (const auto& own : counts.of) {
-    labelled.push_back(
-        static_cast<double>(std::count_if(own.begin(), own.end(), [](std::size_t c) { return c > 0; })));
-    for (const std::size_t c : own)
-      if (c > 0) blinks.push_back(static_cast<double>(c));
-  }
-  double total = 0;
-  for (std::size_t u = 0; u < units; ++u) {
-    double share = 0;
-    for (const auto& own : counts.of) share += own[u] > 0 ? 1 / n : 0;
-    total += share / static_cast<double>(units);
-    const Interval i = wilson(share, n);
-    bars.push_back({"unit " + std::to_string(u + 1), share,
-                    percent(share, 1) + " (" + percent(i.low) + " to " + percent(i.high) + ")", i.low,
-                    i.high});
-  }
+void add_places(const RunRecord& record, Section& s) {
+  const LabellingRecord& l = *record.labelling;
+  const bool units = l.of == "symmetric units";
+  const std::string place = units ? "unit" : "site";
+  const auto n = static_cast<double>(accepted_particles(record));
   s.notes.push_back(
-      std::to_string(units) + " symmetric units; in the mean " + percent(total, 1) +
-      " of them hold a localisation in a particle. A localisation belongs to the nearest unit.");
-  s.figures.push_back({"occupancy", "Units that hold a localisation",
-                       bars_svg(bars, "share of particles that show each unit"),
-                       "Share of the accepted particles, with intervals of 95 % (Wilson)."});
-  s.figures.push_back(
-      {"units-a-particle", "Units a particle",
-       histogram_svg(whole_number_histogram(labelled), "units that hold a localisation", "particles", "c1"),
-       "Of " + std::to_string(units) + "."});
-  s.figures.push_back(
-      {"blinks", "Localisations a unit",
-       histogram_svg(whole_number_histogram(blinks), "localisations of a unit that holds any", "units", "c1"),
-       "Labels of a unit times their blinks."});
+      "Labelling efficiency " + percent(l.efficiency, 1) + " (" + percent(l.low, 1) + " to " +
+      percent(l.high, 1) + "), of " + counted(l.occupancy.size(), units ? "symmetric unit" : "site") +
+      (l.labels_per_site > 1 ? " with " + std::to_string(l.labels_per_site) + " labels each" : "") +
+      ". A localisation counts for every " + place + " that could have made it, as far as it is probable.");
+  if (l.occupancy.size() > kMostPlaces) {
+    s.figures.push_back(absent(
+        "occupancy", "Occupancy",
+        "There are more than " + std::to_string(kMostPlaces) + " " + place + "s: sites.csv lists them."));
+  } else {
+    std::vector<Bar> bars;
+    for (std::size_t k = 0; k < l.occupancy.size(); ++k) {
+      const Interval i = wilson(l.occupancy[k], n);
+      bars.push_back({place + " " + std::to_string(k + 1), l.occupancy[k],
+                      percent(l.occupancy[k], 1) + " (" + percent(i.low) + " to " + percent(i.high) + ")",
+                      i.low, i.high});
+    }
+    s.figures.push_back(
+        {"occupancy", "Occupancy of each " + place,
+         bars_svg(bars, "share of particles with a label at each " + place),
+         std::string("Share of the accepted particles with a label there, with intervals of 95 % "
+                     "(Wilson).") +
+             (units ? " Which unit is the first is a convention of each pose." : "")});
+  }
+  s.figures.push_back({"labelled-a-particle", "Labelled " + place + "s a particle",
+                       expected_svg(l.particles_with, 0, "labelled " + place + "s", "particles"),
+                       "Of " + std::to_string(l.occupancy.size()) + "."});
+  s.figures.push_back({"blinks", "Localisations of a label",
+                       expected_svg(l.labels_of, 1, "localisations of a labelled " + place, place + "s"),
+                       "Blinks, times the labels of a " + place + "."});
 }
 }  // namespace
 
@@ -89,15 +74,14 @@ Section labelling_section(const Subject& subject) {
   std::vector<double> counts;
   for (const PoseRow& p : subject.record.poses)
     if (p.accepted) counts.push_back(static_cast<double>(p.n_localisations));
-  const auto& symmetry = subject.record.symmetry;
-  if (symmetry && symmetry->unit_nm.cols() > 0 && symmetry->unit_nm.cols() <= kMostUnits && !counts.empty())
-    add_units(subject, s);
+  if (subject.record.labelling && !counts.empty())
+    add_places(subject.record, s);
   else
-    s.figures.push_back(
-        absent("occupancy", "Units that hold a localisation",
-               !symmetry ? "Which sites or units are labelled is counted on the units of a symmetry: "
-                           "registration.symmetry: detect, or the group that you know."
-                         : "The average has no symmetric units to count on (" + symmetry->group + ")."));
+    s.figures.push_back(absent("occupancy", "Occupancy",
+                               counts.empty()
+                                   ? "No particle has a pose."
+                                   : "Labels are counted on sites that can be told apart, or on the units "
+                                     "of a symmetry: the average has neither."));
   if (counts.empty())
     s.figures.push_back(absent("localisations", "Localisations a particle", "No particle has a pose."));
   else

@@ -11,8 +11,7 @@ namespace {
 constexpr double kLeft = 46, kRight = 12, kTop = 26, kBottom = 40;
 constexpr double kMargin = 0.05;  // of an axis, beyond the values
 constexpr double kTicks = 5;
-constexpr int kMostDecimals =
-    3;  // of a tick; smaller steps are written in significant digits
+constexpr int kMostDecimals = 3;     // of a tick; smaller steps are written in significant digits
 constexpr double kHalfLetter = 3.8;  // units, of the letters below an axis
 
 std::vector<std::pair<double, std::string>> round_ticks(const Axis& axis) {
@@ -31,7 +30,7 @@ Axis axis_of(const std::vector<double>& values, const std::string& label) {
   const std::vector<double> sorted = sorted_finite(values);
   if (sorted.empty()) return {0, 1, label};
   const double spread = sorted.back() - sorted.front();
-  const double margin = spread > 0 ? kMargin * spread : std::max(1e-3 * std::abs(sorted.back()), 1e-6);
+  const double margin = spread > 0 ? kMargin * spread : std::max(0.1 * std::abs(sorted.back()), 1e-6);
   return {sorted.front() - margin, sorted.back() + margin, label};
 }
 
@@ -126,13 +125,18 @@ void Plot::legend(const std::vector<std::pair<std::string, std::string>>& style_
 }
 
 std::string histogram_svg(const Histogram& h, const std::string& x_label, const std::string& y_label,
-                          const std::string& style, const std::vector<std::pair<double, std::string>>& cuts) {
+                          const std::string& style, const std::vector<std::pair<double, std::string>>& cuts,
+                          const Histogram* accepted) {
   double low = h.low, high = h.high();
   for (const auto& [value, name] : cuts) low = std::min(low, value), high = std::max(high, value);
   const double margin = 0.01 * (high - low);
   Plot plot({low - (low < h.low ? margin : 0), high + (high > h.high() ? margin : 0), x_label},
             {0, 1.08 * static_cast<double>(std::max<std::size_t>(h.highest(), 1)), y_label});
   plot.bars(style, h);
+  if (accepted != nullptr) {
+    plot.bars("c1", *accepted);
+    plot.legend({{"c1", "accepted"}, {style, "rejected"}});
+  }
   for (const auto& [value, name] : cuts) plot.vertical("cut", value, name);
   return plot.svg(x_label + ": histogram of " + std::to_string(h.total) + " values");
 }

@@ -48,9 +48,11 @@ class Plot {
   Drawing drawing_;
 };
 
-/// Bars of a histogram with axes and `cuts` (value, name).
+/// Bars of a histogram with axes and `cuts` (value, name). `accepted`: of the same bins, the part of them
+/// that was accepted, drawn over the whole.
 std::string histogram_svg(const Histogram& histogram, const std::string& x_label, const std::string& y_label,
                           const std::string& style,
-                          const std::vector<std::pair<double, std::string>>& cuts = {});
+                          const std::vector<std::pair<double, std::string>>& cuts = {},
+                          const Histogram* accepted = nullptr);
 
 }  // namespace polar::report

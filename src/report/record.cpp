@@ -79,8 +79,7 @@ void read_poses(const File& file, RunRecord& r) {
              margin = file.read<double>("/poses/margin");
   const auto outliers = numbers<double>(file, "/poses/outlier_fraction"),
              visibility = numbers<double>(file, "/poses/visibility"),
-             posterior_rotation = numbers<double>(file, "/poses/posterior_rotation_deg"),
-             posterior_translation = numbers<double>(file, "/poses/posterior_translation_nm");
+             share = numbers<double>(file, "/poses/posterior_share");
   const std::size_t n = name.size();
   if (reason.size() != n || accepted.size() != n || total.size() != n || used.size() != n ||
       rotation.size() != 9 * n || translation.size() != 3 * n || covariance.size() != 36 * n ||
@@ -109,12 +108,29 @@ void read_poses(const File& file, RunRecord& r) {
       row.log_likelihood = likelihood[i], row.margin = margin[i];
       fit.outlier_fraction = at(outliers, i, PoseRow::kNone);
       fit.visibility = at(visibility, i, PoseRow::kNone);
-      fit.posterior_rotation_deg = at(posterior_rotation, i, PoseRow::kNone);
-      fit.posterior_translation_nm = at(posterior_translation, i, PoseRow::kNone);
+      fit.posterior_share = at(share, i, PoseRow::kNone);
     }
     r.poses.push_back(std::move(row));
     r.fit.push_back(fit);
   }
+  r.least_posterior_share = attribute(file, "/poses", "least_posterior_share", PoseRow::kNone);
+  r.most_rotation_std_deg = attribute(file, "/poses", "most_rotation_std_deg", PoseRow::kNone);
+  r.most_outliers = attribute(file, "/poses", "most_outliers", PoseRow::kNone);
+}
+
+void read_refused(const File& file, RunRecord& r) {
+  const auto column = [&](const char* name) {
+    return numbers<double>(file, std::string("/rejected/scores/") + name);
+  };
+  const auto likelihood = column("log_likelihood"), margin = column("margin"),
+             rotation = column("rotation_std_deg"), translation = column("translation_std_nm"),
+             share = column("posterior_share"), outliers = column("outlier_fraction"),
+             visibility = column("visibility");
+  for (const auto* other : {&margin, &rotation, &translation, &share, &outliers, &visibility})
+    if (other->size() != likelihood.size()) damaged(file, "/rejected/scores: columns of different lengths");
+  for (std::size_t i = 0; i < likelihood.size(); ++i)
+    r.refused.push_back(
+        {likelihood[i], margin[i], rotation[i], translation[i], {outliers[i], visibility[i], share[i]}});
 }
 
 void read_rejected(const File& file, RunRecord& r) {
@@ -136,6 +152,7 @@ void read_symmetry(const File& file, RunRecord& r) {
   SymmetryRecord s;
   s.group = text_attribute(file, "/symmetry", "group");
   s.imposed = attribute<std::uint8_t>(file, "/symmetry", "imposed", 0) != 0;
+  s.asked = attribute<std::uint8_t>(file, "/symmetry", "asked", 0) != 0;
   s.gain = attribute(file, "/symmetry", "held_out_gain", PoseRow::kNone);
   s.gain_std = attribute(file, "/symmetry", "held_out_gain_std", PoseRow::kNone);
   const auto rotation = numbers<double>(file, "/symmetry/rotation"),
@@ -155,11 +172,44 @@ void read_symmetry(const File& file, RunRecord& r) {
   r.symmetry = std::move(s);
 }
 
+void read_labelling(const File& file, RunRecord& r) {
+  const std::string group = "/labelling";
+  if (!file.exists(group)) return;
+  LabellingRecord l;
+  l.of = text_attribute(file, group, "of");
+  l.efficiency = attribute(file, group, "efficiency", PoseRow::kNone);
+  l.low = attribute(file, group, "low", PoseRow::kNone);
+  l.high = attribute(file, group, "high", PoseRow::kNone);
+  l.labels_per_site = attribute<std::int32_t>(file, group, "labels_per_site", 1);
+  l.occupancy = numbers<double>(file, group + "/occupancy");
+  l.particles_with = numbers<double>(file, group + "/particles_with");
+  l.labels_of = numbers<double>(file, group + "/labels_of");
+  if (l.occupancy.empty() || l.particles_with.size() != l.occupancy.size() + 1)
+    damaged(file, group + ": columns of different lengths");
+  r.labelling = std::move(l);
+}
+
+Projections read_projections(const File& file, const std::string& name) {
+  Projections p;
+  if (!file.exists(name)) return p;
+  const smlm::h5::Shape shape = file.info(name).shape;
+  p.value = file.read<float>(name);
+  if (shape.size() != 3 || shape[0] == 0 || shape[1] != shape[2] || p.value.empty())
+    damaged(file, name + ": not square planes");
+  p.edge = static_cast<std::size_t>(shape[1]);
+  return p;
+}
+
 HalfMaps read_half_maps(const File& file, const std::string& group) {
   HalfMaps h;
   h.resolution.period_nm = attribute(file, group, "resolution_nm", PoseRow::kNone);
   h.resolution.at_nyquist = attribute<std::uint8_t>(file, group, "at_nyquist", 0) != 0;
   h.voxel_nm = attribute(file, group, "voxel_nm", 0.0);
+  h.refused = attribute<std::uint8_t>(file, group, "refused", 0) != 0;
+  h.first_projections = read_projections(file, group + "/first_projections");
+  h.second_projections = read_projections(file, group + "/second_projections");
+  if (h.first_projections.value.size() != h.second_projections.value.size())
+    damaged(file, group + ": half maps of different sizes");
   const auto particles = file.has_attribute(group, "particles")
                              ? file.read_attribute<std::uint64_t>(group, "particles")
                              : std::vector<std::uint64_t>{};
@@ -238,6 +288,8 @@ RunRecord read_run_record(const std::string& path) {
   check_lengths(file, r.result);
   read_poses(file, r);
   read_rejected(file, r);
+  read_refused(file, r);
+  read_labelling(file, r);
   read_symmetry(file, r);
   read_resolution(file, r);
   read_search(file, r);

@@ -15,37 +15,40 @@ namespace polar::report {
 namespace {
 struct Score {
   const char *id, *title, *label, *caption;
-  std::vector<double> values;
+  double cut = PoseRow::kNone;  // what the run demanded
+  bool at_least = false;        // the cut is the least that is accepted, else the most
+  std::vector<double> values{}, refused{};
+
+  std::size_t cut_off() const {
+    return static_cast<std::size_t>(std::count_if(refused.begin(), refused.end(),
+                                                  [&](double v) { return at_least ? v < cut : v > cut; }));
+  }
 };
 
-std::vector<Score> scores_of(const RunRecord& record) {
-  std::vector<Score> s;
-  const auto add = [&](const char* id, const char* title, const char* label, const char* caption,
-                       const auto& value) {
-    s.push_back({id, title, label, caption, {}});
-    for (std::size_t i = 0; i < record.poses.size(); ++i)
-      if (record.poses[i].accepted) s.back().values.push_back(value(record.poses[i], record.fit[i]));
+std::vector<Score> scores_of(const RunRecord& r) {
+  std::vector<Score> s = {
+      {"log-likelihood", "Log likelihood", "log likelihood [nat a localisation]", ""},
+      {"margin", "Margin", "above the second-best pose [nat a localisation]",
+       "Near zero: another pose explains the particle as well."},
+      {"posterior-share", "Share of the posterior at this pose", "share",
+       "The margin, weighed with the localisations that tell.", r.least_posterior_share, true},
+      {"rotation-std", "Uncertainty of the rotation", "standard deviation [deg]", "",
+       r.most_rotation_std_deg},
+      {"translation-std", "Uncertainty of the place", "standard deviation [nm]", ""},
+      {"visibility", "Visibility", "share of the template that a particle shows", ""},
+      {"outliers", "Outliers", "share of localisations that the template does not explain", "",
+       r.most_outliers}};
+  const auto add = [&](const ParticleScores& p, bool accepted) {
+    const double of[] = {p.log_likelihood,     p.margin,         p.fit.posterior_share, p.rotation_std_deg,
+                         p.translation_std_nm, p.fit.visibility, p.fit.outlier_fraction};
+    for (std::size_t k = 0; k < s.size(); ++k) (accepted ? s[k].values : s[k].refused).push_back(of[k]);
   };
-  using P = const PoseRow&;
-  using F = const ParticleFit&;
-  add("log-likelihood", "Log likelihood", "log likelihood [nat a localisation]", "",
-      [](P p, F) { return p.log_likelihood; });
-  add("margin", "Margin", "above the second-best pose [nat a localisation]",
-      "Near zero: another pose explains the particle as well, as every turn of a symmetry does.",
-      [](P p, F) { return p.margin; });
-  add("rotation-std", "Uncertainty of the rotation", "standard deviation [deg]", "",
-      [](P p, F) { return p.rotation_std_deg; });
-  add("translation-std", "Uncertainty of the place", "standard deviation [nm]", "",
-      [](P p, F) { return p.translation_std_nm; });
-  add("rotation-spread", "Spread of the rotation over all poses", "standard deviation [deg]",
-      "Far above the uncertainty: other poses are as likely.",
-      [](P, F f) { return f.posterior_rotation_deg; });
-  add("translation-spread", "Spread of the place over all poses", "standard deviation [nm]", "",
-      [](P, F f) { return f.posterior_translation_nm; });
-  add("visibility", "Visibility", "share of the template that a particle shows", "",
-      [](P, F f) { return f.visibility; });
-  add("outliers", "Outliers", "share of localisations that the template does not explain", "",
-      [](P, F f) { return f.outlier_fraction; });
+  for (std::size_t i = 0; i < r.poses.size(); ++i) {
+    const PoseRow& p = r.poses[i];
+    if (p.accepted)
+      add({p.log_likelihood, p.margin, p.rotation_std_deg, p.translation_std_nm, r.fit[i]}, true);
+  }
+  for (const ParticleScores& p : r.refused) add(p, false);
   return s;
 }
 
@@ -79,38 +82,60 @@ Figure rejections_figure(const RunRecord& record) {
     words += (words.empty() ? "" : "; ") + std::to_string(n) + ": " + reason;
   return {"rejections", "Rejected", bars_svg(bars, "rejected particles by reason"), words + "."};
 }
+
+// A cut-off far beyond all values would flatten them: it is said, not drawn.
+bool can_be_drawn(double cut, const Histogram& h) {
+  const double span = h.high() - h.low;
+  return std::isfinite(cut) && cut > h.low - span && cut < h.high() + span;
+}
+
+// What the run demanded; empty where it demands nothing of this score.
+std::string limit_text(const Score& score) {
+  if (!std::isfinite(score.cut)) return {};
+  return std::string(score.at_least ? " At least " : " At most ") + digits(score.cut) + " is accepted";
+}
+
+Figure score_figure(const Score& score, std::size_t unlike) {
+  std::vector<double> all = score.values;
+  all.insert(all.end(), score.refused.begin(), score.refused.end());
+  const std::vector<double> finite = sorted_finite(all), accepted = sorted_finite(score.values);
+  if (finite.empty())
+    return absent(score.id, score.title,
+                  all.empty() ? "No particle has a pose." : "The record does not hold it.");
+  if (finite.front() == finite.back())
+    return absent(score.id, score.title,
+                  "All particles have " + digits(finite[0]) + "." + limit_text(score) +
+                      (std::isfinite(score.cut) ? "." : ""));
+  const Histogram h = histogram(all);
+  const Histogram of_accepted = histogram_between(score.values, h.low, h.high(), h.count.size());
+  std::string caption =
+      accepted.empty() ? "No particle was accepted. " : "Median " + digits(upper_median(accepted)) + ". ";
+  caption += std::string(score.caption) + (*score.caption ? " " : "");
+  std::vector<std::pair<double, std::string>> cuts;
+  if (std::string(score.id) == "log-likelihood") {
+    cuts = stranger_cuts(accepted);
+    caption += cuts.empty() ? "Too few particles to tell one that is unlike the others."
+                            : "Dashed: six robust standard deviations from the median. Beyond: " +
+                                  counted(unlike, "particle") + ", accepted but unlike the others.";
+  }
+  if (std::isfinite(score.cut)) {
+    const bool drawn = can_be_drawn(score.cut, h);
+    if (drawn) cuts.emplace_back(score.cut, digits(score.cut));
+    caption += limit_text(score) + (drawn ? " (dashed)" : "") + ": " + counted(score.cut_off(), "particle") +
+               " beyond.";
+  }
+  return {score.id, score.title,
+          histogram_svg(h, score.label, "particles", score.refused.empty() ? "c1" : "c2", cuts,
+                        score.refused.empty() ? nullptr : &of_accepted),
+          caption + beyond(h)};
+}
 }  // namespace
 
 Section scores_section(const Subject& subject) {
   const RunRecord& record = subject.record;
   Section s{"scores", "Scores", {}, {}, {}};
-  for (const Score& score : scores_of(record)) {
-    const std::vector<double> finite = sorted_finite(score.values);
-    if (finite.empty()) {
-      s.figures.push_back(
-          absent(score.id, score.title,
-                 score.values.empty() ? "No particle has a pose." : "The record does not hold it."));
-      continue;
-    }
-    if (finite.front() == finite.back()) {
-      s.figures.push_back(
-          absent(score.id, score.title, "All accepted particles have " + digits(finite[0]) + "."));
-      continue;
-    }
-    const Histogram h = histogram(score.values);
-    const bool likelihood = std::string(score.id) == "log-likelihood";
-    std::string caption = std::string(score.caption) + beyond(h);
-    const auto cuts = likelihood ? stranger_cuts(finite) : std::vector<std::pair<double, std::string>>{};
-    if (likelihood) {
-      const std::size_t unlike = strangers(record.poses).size();
-      caption = cuts.empty()
-                    ? "Too few particles to tell one that is unlike the others." + caption
-                    : "Dashed: six robust standard deviations from the median. Beyond: " +
-                          counted(unlike, "particle") + ", accepted but unlike the others." + caption;
-    }
-    s.figures.push_back({score.id, score.title, histogram_svg(h, score.label, "particles", "c1", cuts),
-                         "Median " + digits(upper_median(finite)) + ". " + caption});
-  }
+  const std::size_t unlike = strangers(record.poses).size();
+  for (const Score& score : scores_of(record)) s.figures.push_back(score_figure(score, unlike));
   s.figures.push_back(rejections_figure(record));
   return s;
 }

@@ -15,7 +15,7 @@ constexpr std::size_t kMostStarts = 24, kMostStages = 24;
 Bar start_bar(const StartRecord& start, double value, double error) {
   return {start.name + (start.won ? " (won)" : ""),
           value,
-          fixed(value, 4) + (std::isfinite(error) ? " ± " + fixed(error, 4) : ""),
+          fixed(value, 4) + (error > 0 ? " ± " + fixed(error, 4) : ""),  // the first has none before it
           value - error,
           value + error,
           start.won ? "c2" : "c1"};

@@ -64,6 +64,7 @@ std::string utf8(const std::string& text) {
 
 std::string duration(double seconds) {
   if (!(seconds >= 0)) return "none";
+  if (seconds > 0 && seconds < 0.005) return "< 0.01 s";
   if (seconds < 120) return digits(seconds, 3) + " s";
   const auto whole = static_cast<long long>(std::llround(seconds));
   if (whole < 7200) return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";

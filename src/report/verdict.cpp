@@ -63,6 +63,16 @@ std::string most_frequent_reason(const RunRecord& record) {
   return most == count.end() ? std::string() : most->first + " (" + std::to_string(most->second) + ")";
 }
 
+namespace {
+// Begins with a capital letter and ends with a full stop.
+std::string as_sentence(std::string text) {
+  if (text.empty()) return text;
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  for (std::size_t at; (at = text.find(" +- ")) != std::string::npos;) text.replace(at, 4, " ± ");
+  return text.back() == '.' ? text : text + ".";
+}
+}  // namespace
+
 Verdict verdict(const RunRecord& record) {
   Verdict v;
   const std::size_t accepted = accepted_particles(record), all = record.poses.size();
@@ -76,9 +86,8 @@ Verdict verdict(const RunRecord& record) {
                  : v.state == "ambiguous" ? why_not
                                           : std::to_string(accepted) + " of " + counted(all, "particle") +
                                                 " fit one structure: " + support(record);
-    v.sentence += ".";
-    v.sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(v.sentence[0])));
   }
+  v.sentence = as_sentence(v.sentence);
   v.warnings = record.warnings;
   if (accepted > 0 && !record.resolution && record.agreement == 0)
     v.warnings.emplace_back(
@@ -113,9 +122,15 @@ std::vector<KeyNumber> key_numbers(const RunRecord& record) {
                      accepted ? digits(median_of(record, &PoseRow::rotation_std_deg)) + "°, medians" : ""});
   if (record.symmetry)
     numbers.push_back({"symmetry", record.symmetry->group == "C1" ? "none found" : record.symmetry->group,
-                       record.symmetry->imposed ? "imposed" : "detected"});
+                       record.symmetry->group == "C1" ? ""
+                       : record.symmetry->asked       ? "as asked for"
+                       : record.symmetry->imposed     ? "by evidence"
+                                                      : "reported, not used"});
   else
     numbers.push_back({"symmetry", "not asked for", "registration.symmetry: detect"});
+  if (record.labelling)
+    numbers.push_back({"labelling", percent(record.labelling->efficiency, 1),
+                       percent(record.labelling->low, 1) + " to " + percent(record.labelling->high, 1)});
   return numbers;
 }
 

@@ -104,18 +104,44 @@ DrawnShells shells_between(const Table& a, const RenderOptions& drawing_a, const
   return out;
 }
 
-HalfMaps compare_half_maps(const Results& first, const Results& second, std::uint64_t seed) {
+Projections projections_of(const Volume& v) {
+  Projections p;
+  p.edge = v.size[0];
+  constexpr std::array<std::array<std::size_t, 3>, 3> kAcrossUpThrough = {{{0, 1, 2}, {0, 2, 1}, {1, 2, 0}}};
+  const auto depth_nm = static_cast<float>(v.planar ? 1.0 : v.voxel_nm);
+  for (std::size_t plane = 0; plane < (v.planar ? 1u : 3u); ++plane) {
+    const auto [across, up, through] = kAcrossUpThrough[plane];
+    std::array<std::size_t, 3> at{};
+    for (at[up] = 0; at[up] < p.edge; ++at[up])
+      for (at[across] = 0; at[across] < p.edge; ++at[across]) {
+        double sum = 0;
+        for (at[through] = 0; at[through] < v.size[through]; ++at[through])
+          sum += double(v.at(at[0], at[1], at[2]));
+        p.value.push_back(depth_nm * static_cast<float>(sum));
+      }
+  }
+  return p;
+}
+
+HalfMaps compare_half_maps(const Results& first, const Results& second, std::uint64_t seed,
+                           const Results* whole) {
   HalfMaps out;
   out.first_particles = accepted_particles(first), out.second_particles = accepted_particles(second);
   if (out.first_particles == 0 || out.second_particles == 0) return out;
   out.first_from_second_nm = align_maps(first, second, seed);
-  const Table a = superparticle(first), b = moved(superparticle(second), out.first_from_second_nm);
+  const Pose drawn_from_first = whole != nullptr ? align_maps(*whole, first, seed) : Pose{};
+  const Table a = moved(superparticle(first), drawn_from_first),
+              b = moved(superparticle(second), drawn_from_first * out.first_from_second_nm);
   const auto drawing = [](const Results& r) {
     return calibrated_rendering(r.registration.calibration, r.normalisation.scale_nm);
   };
   DrawnShells drawn = shells_between(a, drawing(first), b, drawing(second));
   out.voxel_nm = drawn.voxel_nm;
   out.first_density = std::move(drawn.first), out.second_density = std::move(drawn.second);
+  if (!out.first_density.density.empty()) {
+    out.first_projections = projections_of(out.first_density);
+    out.second_projections = projections_of(out.second_density);
+  }
   out.shells = std::move(drawn.shells);
   out.resolution = shell_resolution(out.shells);
   return out;

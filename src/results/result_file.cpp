@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "polar/core/constants.hpp"
 #include "polar/registration/tilt.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
@@ -54,6 +55,9 @@ void write_poses(File& file, const Results& r) {
     visibility.push_back(gate * v.visibility);
   }
   file.make_group("/poses");
+  file.write_attribute("/poses", "least_posterior_share", r.limits.least_posterior_share);
+  file.write_attribute("/poses", "most_rotation_std_deg", r.limits.most_rotation_std_deg);
+  file.write_attribute("/poses", "most_outliers", r.limits.most_outliers);
   file.write_string_attribute("/poses", "convention",
                               "x_template = rotation x_table + translation; rejected particles are NaN");
   file.write_strings("/poses/particle", name);
@@ -132,6 +136,7 @@ void write_superparticle(File& file, const Results& r, const smlm::LocalisationT
   file.write_attribute("/superparticle", "planar", static_cast<std::uint8_t>(r.planar ? 1 : 0));
   if (!r.channel_column.empty())
     file.write_string_attribute("/superparticle", "channel_column", r.channel_column);
+  file.write_strings("/superparticle/registering_channels", r.registering_channels);
   file.make_group("/superparticle/columns");
   for (std::size_t c = 0; c < t.extra.size(); ++c) {
     const std::string name =
@@ -157,6 +162,34 @@ void write_superparticle(File& file, const Results& r, const smlm::LocalisationT
   file.write("/input/rejected_rows", rows);
 }
 
+// What the poses that were not accepted came to: what a cut-off cuts off.
+void write_refused(File& file, const Results& r) {
+  std::vector<std::int64_t> row;
+  std::vector<double> rotation_std_deg, translation_std_nm, likelihood, margin, share, outliers, visibility;
+  for (std::size_t i = 0; i < r.registration.view.size(); ++i) {
+    const RegisteredView& v = r.registration.view[i];
+    if (v.accepted || v.n_used == 0) continue;
+    const Eigen::Matrix<double, 6, 6> c = pose_covariance_nm(r, i);
+    row.push_back(static_cast<std::int64_t>(i));
+    rotation_std_deg.push_back(kDegreesPerRadian * std::sqrt(c.topLeftCorner<3, 3>().trace()));
+    translation_std_nm.push_back(std::sqrt(c.bottomRightCorner<3, 3>().trace()));
+    likelihood.push_back(v.log_likelihood), margin.push_back(v.margin);
+    share.push_back(v.posterior_share), outliers.push_back(v.outlier_fraction);
+    visibility.push_back(v.visibility);
+  }
+  const std::string group = "/rejected/scores/";
+  const std::uint64_t n = row.size();
+  write_with_unit(file, group + "row", row, {n}, "1", "row of /poses; the others as in /poses");
+  write_with_unit(file, group + "rotation_std_deg", rotation_std_deg, {n}, "deg",
+                  "of the pose that was refused");
+  write_with_unit(file, group + "translation_std_nm", translation_std_nm, {n}, "nm", "likewise");
+  write_with_unit(file, group + "log_likelihood", likelihood, {n}, "nat", "likewise");
+  write_with_unit(file, group + "margin", margin, {n}, "nat", "likewise");
+  write_with_unit(file, group + "posterior_share", share, {n}, "1", "likewise");
+  write_with_unit(file, group + "outlier_fraction", outliers, {n}, "1", "likewise");
+  write_with_unit(file, group + "visibility", visibility, {n}, "1", "likewise");
+}
+
 // Rejected particles as the table has them: the superparticle holds the others.
 void write_rejected(File& file, const Results& r) {
   std::vector<double> position;
@@ -173,6 +206,7 @@ void write_rejected(File& file, const Results& r) {
   write_with_unit(file, "/rejected/position", position, {n, 3}, "nm",
                   "x, y, z in the table's own coordinates");
   write_with_unit(file, "/rejected/particle", particle, {n}, "1", "row of /poses");
+  write_refused(file, r);
 }
 
 void write_run(File& file, const Results& r) {
@@ -240,12 +274,44 @@ void write_run(File& file, const Results& r) {
   file.write_attribute("/run/calibration", "axial_extra_nm", scale_nm * g.calibration.axial_extra);
 }
 
+void write_labelling(File& file, const LabelledPlaces& l) {
+  const std::string group = "/labelling";
+  file.make_group(group);
+  file.write_string_attribute(group, "of", l.labelling.of);
+  file.write_attribute(group, "efficiency", l.labelling.efficiency);
+  file.write_attribute(group, "low", l.labelling.low);
+  file.write_attribute(group, "high", l.labelling.high);
+  file.write_attribute(group, "labels_per_site", static_cast<std::int32_t>(l.labelling.labels_per_site));
+  file.write_attribute(group, "particles", static_cast<std::uint64_t>(l.labelling.particles));
+  file.write_attribute(group, "fewest_sites", static_cast<std::int32_t>(l.labelling.fewest));
+  std::vector<double> place;
+  for (Eigen::Index k = 0; k < l.place_nm.cols(); ++k)
+    for (Eigen::Index a = 0; a < 3; ++a) place.push_back(l.place_nm(a, k));
+  write_with_unit(file, group + "/place", place, {static_cast<std::uint64_t>(l.place_nm.cols()), 3}, "nm",
+                  "where labels are counted, template frame");
+  const auto write = [&](const char* name, const std::vector<double>& values, const char* meaning) {
+    write_with_unit(file, group + "/" + name, values, {values.size()}, "1", meaning);
+  };
+  write("occupancy", l.counts.occupancy, "share of the accepted particles with a label at each place");
+  write("particles_with", l.counts.particles, "[n]: accepted particles with n labelled places, expected");
+  write("labels_of", l.counts.labels, "[k]: labelled places with k localisations, expected");
+}
+
+void write_projections(File& file, const std::string& name, const Projections& p) {
+  if (p.planes() == 0) return;
+  write_with_unit(file, name, p.value, {p.planes(), p.edge, p.edge}, "nm^-2",
+                  "the half map summed through its depth: planes xy, xz, yz; rows from the bottom");
+}
+
 void write_half_maps(File& file, const std::string& group, const HalfMaps& h) {
   file.make_group(group);
   file.write_attribute(group, "resolution_nm", h.resolution.period_nm);  // NaN: nothing is resolved
   file.write_attribute(group, "at_nyquist", static_cast<std::uint8_t>(h.resolution.at_nyquist ? 1 : 0));
   file.write_attribute(group, "voxel_nm", h.voxel_nm);
   file.write_attribute(group, "particles", std::vector<std::uint64_t>{h.first_particles, h.second_particles});
+  file.write_attribute(group, "refused", static_cast<std::uint8_t>(h.refused ? 1 : 0));
+  write_projections(file, group + "/first_projections", h.first_projections);
+  write_projections(file, group + "/second_projections", h.second_projections);
   file.write(group + "/frequency_per_nm", h.shells.frequency_per_nm);
   file.write(group + "/correlation", h.shells.correlation);
   file.write(group + "/coefficients", h.shells.coefficients);
@@ -311,6 +377,7 @@ void write_result_file(const std::string& path, const Results& results,
   if (results.registration.symmetry)
     write_symmetry(file, *results.registration.symmetry, results.normalisation.scale_nm);
   if (results.resolution) write_resolution(file, *results.resolution);
+  if (results.labelled) write_labelling(file, *results.labelled);
   file.close();
   atomic.commit();
 }
@@ -373,6 +440,8 @@ ResultRecord read_result_file(const std::string& path) {
   record.render.axial_extra_nm = calibration("axial_extra_nm");
   if (file.has_attribute("/superparticle", "channel_column"))
     record.render.channel_column = file.read_string_attribute("/superparticle", "channel_column");
+  if (file.exists("/superparticle/registering_channels"))
+    record.registering_channels = file.read_strings("/superparticle/registering_channels");
   record.poses = read_poses(file, path, t.particle_names);
   const auto centre = file.read<double>("/template/centre"), weight = file.read<double>("/template/weight");
   if (centre.size() != 3 * weight.size())

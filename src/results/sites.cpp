@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "csv_line.hpp"
 #include "emitter.hpp"
-#include "occupied_sites.hpp"
+#include "label_counts.hpp"
 #include "polar/core/constants.hpp"
 #include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
@@ -191,26 +192,6 @@ Model fit(const Table& t, const std::vector<Eigen::Vector3d>& start, const Volum
   } while (drop_one_of_two(m, sigma));
   return m;
 }
-
-// Which sites the particles show.
-void count_occupied(const Model& m, const Table& t, DiscreteSites& out) {
-  const double background = std::max(m.background_share, kLeastBackground) * m.background_density;
-  const std::vector<std::vector<std::size_t>> rows = results::rows_of_particles(t);
-  for (const auto& own : rows) {
-    Eigen::MatrixXd density(static_cast<Eigen::Index>(own.size()), static_cast<Eigen::Index>(m.site.size()));
-    for (std::size_t i = 0; i < own.size(); ++i)
-      for (std::size_t k = 0; k < m.site.size(); ++k)
-        density(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-            emitter(m, results::covariance(t, own[i]), Eigen::Vector3d(t.position_nm[own[i]].data()), k)
-                .density;
-    int n = 0;
-    for (const std::size_t k : results::occupied_sites(density, background)) {
-      ++n;
-      out.site[k].occupancy += 1 / static_cast<double>(rows.size());
-    }
-    out.occupied.push_back(n);
-  }
-}
 }  // namespace
 
 DiscreteSites find_sites(const Table& t, const RenderOptions& options) {
@@ -238,7 +219,15 @@ DiscreteSites find_sites(const Table& t, const RenderOptions& options) {
     s.centre_std_nm = std::hypot(sigma, s.width_nm) / std::sqrt(s.share * static_cast<double>(t.size()));
   out.site = m.site;
   out.background_share = m.background_share;
-  count_occupied(m, t, out);
+  const auto density_at = [&](const Eigen::Matrix3d& c, const Eigen::Vector3d& x, std::size_t k) {
+    return emitter(m, c, x, k).density;
+  };
+  out.counts = results::count_labels(results::candidates_of(t, m.site.size(), density_at), m.site.size(),
+                                     m.background_density, std::max(m.background_share, kLeastBackground));
+  for (std::size_t k = 0; k < out.site.size(); ++k) {
+    out.site[k].occupancy = out.counts.occupancy[k];
+    out.orbit.push_back(k);
+  }
   return out;
 }
 
@@ -252,16 +241,35 @@ std::string format_sites_csv(const DiscreteSites& sites) {
   return text;
 }
 
+void set_orbits(DiscreteSites& sites, const std::vector<Eigen::Matrix3d>& group,
+                const Pose& canonical_from_template) {
+  std::vector<Eigen::Vector3d> place;
+  for (const Site& s : sites.site) place.push_back(canonical_from_template * s.centre_nm);
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    const double near_nm = nearest_nm(sites.site, k) / 2;
+    for (std::size_t j = 0; j < k && sites.orbit[k] == k; ++j)
+      if (std::any_of(group.begin(), group.end(), [&](const Eigen::Matrix3d& turn) {
+            return (turn * place[j] - place[k]).norm() < near_nm;
+          }))
+        sites.orbit[k] = sites.orbit[j];
+  }
+}
+
 std::vector<std::size_t> hot_spots(const DiscreteSites& sites) {
+  const std::size_t n = sites.site.size();
   std::vector<std::size_t> hot;
-  if (sites.site.size() < 3 || sites.occupied.empty()) return hot;
-  std::vector<double> occupancy;
-  for (const Site& s : sites.site) occupancy.push_back(s.occupancy);
+  const double particles = std::accumulate(sites.counts.particles.begin(), sites.counts.particles.end(), 0.0);
+  if (n < 3 || !(particles > 0)) return hot;
+  std::vector<double> sum(n, 0.0), members(n, 0.0), occupancy;
+  for (std::size_t k = 0; k < n; ++k)
+    sum[sites.orbit[k]] += sites.site[k].occupancy, members[sites.orbit[k]] += 1;
+  for (std::size_t k = 0; k < n; ++k) occupancy.push_back(sum[sites.orbit[k]] / members[sites.orbit[k]]);
   const double usual = upper_median(occupancy);
-  const double error =
-      std::sqrt(std::max(usual * (1 - usual), 1e-4) / static_cast<double>(sites.occupied.size()));
-  for (std::size_t k = 0; k < occupancy.size(); ++k)
+  for (std::size_t k = 0; k < n; ++k) {
+    const double error =
+        std::sqrt(std::max(usual * (1 - usual), 1e-4) / (particles * members[sites.orbit[k]]));
     if (occupancy[k] > usual + kHotSpot * error) hot.push_back(k);
+  }
   return hot;
 }
 

@@ -9,9 +9,12 @@ namespace polar {
 
 namespace {
 constexpr double kNoTilt = 1e-9;  // sine below which rot and psi turn about the same axis
+// RELION reads no optics group, and then none of the poses, without a voltage and a spherical aberration.
+// Light has neither and no image is here that they could touch: a voltage it knows and no aberration.
 constexpr const char* kOptics =
     "\ndata_optics\n\nloop_\n_rlnOpticsGroup #1\n_rlnOpticsGroupName #2\n_rlnImagePixelSize #3\n"
-    "_rlnImageDimensionality #4\n1 nanometres 10.0 3\n\n";
+    "_rlnImageDimensionality #4\n_rlnVoltage #5\n_rlnSphericalAberration #6\n_rlnAmplitudeContrast #7\n"
+    "1 nanometres 10.0 3 300.0 0.0 0.1\n\n";
 constexpr const char* kColumns[] = {
     "rlnTomoParticleName", "rlnCoordinateX",  "rlnCoordinateY",           "rlnCoordinateZ",
     "rlnOriginXAngst",     "rlnOriginYAngst", "rlnOriginZAngst",          "rlnAngleRot",

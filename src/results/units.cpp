@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "emitter.hpp"
-#include "occupied_sites.hpp"
+#include "label_counts.hpp"
 #include "polar/core/median.hpp"
-#include "polar/core/parallel.hpp"
 
 namespace polar {
 
 namespace {
-constexpr double kApart = 4;       // standard deviations between units; at 3 a tenth of single labels is lost
-constexpr int kSteps = 5;          // of units and of how often they are there in turn
-constexpr double kMostOdds = 4.6;  // 99 to 1
+constexpr double kApart = 3;        // standard deviations between units
 constexpr double kLightest = 1e-4;  // of the template: a centre that weighs less says nothing
 
 struct Unit {
@@ -61,7 +57,7 @@ bool apart(const std::vector<Unit>& units, double sigma_nm) {
 }  // namespace
 
 UnitOccupancy occupied_units(const smlm::LocalisationTable& t, const TemplateSites& fused,
-                             const Eigen::Matrix3Xd& unit_nm, double background) {
+                             const Eigen::Matrix3Xd& unit_nm, double background, double background_share) {
   UnitOccupancy out;
   out.reason = "the template has no symmetric units";
   if (unit_nm.cols() < 2 || t.size() == 0) return out;
@@ -73,33 +69,13 @@ UnitOccupancy occupied_units(const smlm::LocalisationTable& t, const TemplateSit
   out.reason = "its symmetric units are not far enough apart to be told from one another";
   if (!apart(units, upper_median(std::move(sigma)))) return out;
   out.reason.clear();
-  out.units = static_cast<int>(units.size());
-  const std::vector<std::vector<std::size_t>> rows = results::rows_of_particles(t);
-  std::vector<Eigen::MatrixXd> densities(rows.size());
-  parallel_for(rows.size(), [&](std::size_t p) {
-    Eigen::MatrixXd& density = densities[p];
-    density = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows[p].size()), unit_nm.cols());
-    for (std::size_t i = 0; i < rows[p].size(); ++i) {
-      const std::size_t row = rows[p][i];
-      const Eigen::Matrix3d c = results::covariance(t, row);
-      const Eigen::Vector3d x(t.position_nm[row].data());
-      for (std::size_t u = 0; u < units.size(); ++u)
-        for (const Site& s : units[u].centre)
-          density(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(u)) +=
-              s.share * results::emitter(t.planar, c, x, s).density;
-    }
-  });
-  // How often units are there at all says how much a doubtful one is worth.
-  out.occupied.assign(rows.size(), 0);
-  double odds = 0;
-  for (int step = 0; step < kSteps; ++step) {
-    parallel_for(rows.size(), [&](std::size_t p) {
-      out.occupied[p] = static_cast<int>(results::occupied_sites(densities[p], background, odds).size());
-    });
-    const double all = std::accumulate(out.occupied.begin(), out.occupied.end(), 0.0);
-    const double share = all / static_cast<double>(rows.size() * units.size());
-    odds = std::clamp(std::log(share / std::max(1 - share, 1e-9)), -kMostOdds, kMostOdds);
-  }
+  const auto density = [&](const Eigen::Matrix3d& c, const Eigen::Vector3d& x, std::size_t u) {
+    double sum = 0;
+    for (const Site& s : units[u].centre) sum += s.share * results::emitter(t.planar, c, x, s).density;
+    return sum;
+  };
+  out.counts = results::count_labels(results::candidates_of(t, units.size(), density), units.size(),
+                                     background, background_share);
   return out;
 }
 

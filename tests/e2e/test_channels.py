@@ -60,7 +60,7 @@ class Channels(PolarCase):
     def test_the_second_colour_is_where_it_should_be(self):
         both = [dict(row, channel=1) for row in self.rings] + [dict(row, channel=2) for row in self.centres]
         self.table("both.csv", both, ["channel"])
-        more = "registration: {starts: [imaged], symmetry: D8}\noutput: {formats: [hdf5, csv, vtkhdf, tiff]}\n"
+        more = "registration: {starts: [imaged], symmetry: D8}\noutput: {formats: [hdf5, csv, vtkhdf, tiff, sites]}\n"
         self.write("run.yaml", "input: {files: both.csv, channel: {column: channel, register: [1]}}\n" + more)
         self.ok("run", "run.yaml")
         first, second = self.aligned(channel="1"), self.aligned(channel="2")
@@ -68,6 +68,12 @@ class Channels(PolarCase):
         self.assertGreater(len(second), 30 * CENTRE_LOCALISATIONS)
         self.assertGreater(len(first), len(second))
         self.assertSamePlace(self.centroid(second), (0, 0, 0), 1)  # where the axes of the rings' symmetry meet
+        # Sites of the record later are those of the run: the carried colour has none.
+        sites = (self.folder / "results/sites.csv").read_bytes()
+        (self.folder / "later").mkdir()
+        self.ok("export", "results", "--to", "sites", "--output", "later")
+        self.assertEqual((self.folder / "later/sites.csv").read_bytes(), sites)
+        self.assertGreater(len(sites.splitlines()), 8)
         # The centre takes no part: without it the poses are the same bits.
         self.table("rings.csv", self.rings)
         self.write("rings.yaml", "input: {files: rings.csv}\n" + more)

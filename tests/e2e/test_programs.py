@@ -194,6 +194,60 @@ class ImageJ(ProgramCase):
         self.assertAlmostEqual(mean, sum(values) / len(values), delta=1e-8)
 
 
+# The macro as a user has it: with windows, so that it wants a display.
+FIJI = """
+runMacro("{macro}", "{results}");
+lines = "";
+titles = getList("image.titles");
+for (i = 0; i < titles.length; i++) {{
+  selectImage(titles[i]);
+  getVoxelSize(width, height, depth, unit);
+  getDimensions(columns, rows, channels, slices, frames);
+  lines = lines + titles[i] + " " + columns + " " + rows + " " + slices + " " + unit + " " + d2s(width, 6) + " " + Overlay.size + "\\n";
+}}
+File.saveString(lines + getInfo("log"), "{said}");
+run("Quit");
+"""
+
+
+@program("XVFB_RUN", "Xvfb (xvfb-run)")
+@program("IMAGEJ_JAR", "ImageJ (libij-java and a Java runtime)")
+@program("PICASSO_PYTHON", "h5py (build-tools/picasso)")
+class FijiMacro(ProgramCase):
+    def test_template_opens_calibrated_with_a_scale_bar(self):
+        scripts = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+        said = self.folder / "said.txt"
+        macro = self.write("fiji.ijm", FIJI.format(macro=scripts / "open_template.ijm", results=self.results, said=said))
+        self.output_of([os.environ["XVFB_RUN"], "-a", os.environ["JAVA"], "-cp", os.environ["IMAGEJ_JAR"], "ij.ImageJ",
+                        "-macro", macro])
+        stack, projection, log = said.read_text().splitlines()[:3]
+        size, _, voxel, _ = self.python("PICASSO_PYTHON", TEMPLATE)
+        self.assertEqual(stack.split()[:5], ["template.tif", *map(str, size), "nm"])
+        self.assertAlmostEqual(float(stack.split()[5]), voxel, delta=1e-4)
+        self.assertEqual(projection.split()[:5], ["MAX_template.tif", str(size[0]), str(size[1]), "1", "nm"])
+        self.assertGreater(int(projection.split()[6]), 0, "the scale bar")
+        self.assertIn("channels: 1", log)
+
+
+# What RELION itself says of the files: it counts particles, and reads a map's size and voxel.
+@program("RELION_STAR", "RELION (relion_star_handler)")
+class Relion(ProgramCase):
+    def test_reads_optics_poses_and_maps(self):
+        said = self.output_of([os.environ["RELION_STAR"], "--i", "results/poses.star", "--o", "read.star"])
+        self.assertNotIn("could not read optics", said)
+        read = (self.folder / "read.star").read_text()
+        table = read[read.index("data_particles"):].splitlines()
+        with (self.results / "poses.csv").open() as poses:
+            accepted = [row["particle"] for row in csv.DictReader(poses) if row["accepted"] == "1"]
+        self.assertEqual([line.split()[0] for line in table if len(line.split()) == 12], accepted)
+        image = pathlib.Path(os.environ["RELION_STAR"]).with_name("relion_image_handler")
+        said = self.output_of([image, "--i", "results/template.mrc", "--stats"])
+        header = (self.results / "template.mrc").read_bytes()[:1024]
+        size = [int.from_bytes(header[4 * k:4 * k + 4], "little") for k in range(3)]
+        self.assertIn("= {} x {} x {} x 1".format(*size), said)
+        self.assertIn("angpix = ", said)
+
+
 # load_locs drops, without a word, rows that lie outside the image or hold a negative or no number.
 PICASSO = """
 import json

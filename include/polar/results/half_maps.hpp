@@ -14,8 +14,10 @@ namespace polar {
 Pose align_maps(const Results& first, const Results& second, std::uint64_t seed);
 
 /// Aligns, draws both superparticles in one cube (calibrated, localisations at its faces left out) and
-/// correlates. A half without an accepted particle leaves the resolution NaN.
-HalfMaps compare_half_maps(const Results& first, const Results& second, std::uint64_t seed);
+/// correlates. Where the result of all particles is given, the cube lies in its frame, so that half maps and
+/// template can be laid over one another. A half without an accepted particle leaves the resolution NaN.
+HalfMaps compare_half_maps(const Results& first, const Results& second, std::uint64_t seed,
+                           const Results* whole = nullptr);
 
 /// Two tables of one frame, drawn in one cube (as the options say, localisations at its faces left out), and
 /// what they have in common. `most_voxels` along an edge, a product of 2, 3 and 5; 0: as compare_half_maps

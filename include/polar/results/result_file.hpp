@@ -12,8 +12,9 @@ namespace polar {
 struct ResultRecord {
   smlm::LocalisationTable superparticle;
   TemplateSites sites;
-  std::vector<PoseRow> poses;  // without their standard deviations
-  RenderOptions render;        // its calibration
+  std::vector<PoseRow> poses;                     // without their standard deviations
+  RenderOptions render;                           // its calibration
+  std::vector<std::string> registering_channels;  // see Results; of render.channel_column
   std::string program, configuration, input_hash;
   std::vector<std::string> warnings;  // of the run: what it assumed
 };

@@ -9,7 +9,9 @@
 
 #include "polar/core/pose.hpp"
 #include "polar/core/view.hpp"
+#include "polar/registration/engine_options.hpp"
 #include "polar/registration/registration.hpp"
+#include "polar/results/labelling.hpp"
 #include "polar/results/pose_table.hpp"
 #include "polar/results/resolution.hpp"
 #include "smlm/particle_set.hpp"
@@ -27,16 +29,26 @@ struct Provenance {
   std::vector<std::string> input_file{}, input_sha256{};  // parallel: everything that was read
 };
 
+/// How many of the places of a template carry a label.
+struct LabelledPlaces {
+  Labelling labelling;
+  PlaceCounts counts;
+  Eigen::Matrix3Xd place_nm;  // 3 x places, template frame
+};
+
 /// A run's result. particles.particles, normalisation.centre_nm and registration.view are parallel: one
 /// entry a particle, in the order of the input.
 struct Results {
   smlm::ParticleSet particles;
   Normalisation normalisation;
   bool planar = false;
-  std::string channel_column;  // of the table, where it holds several channels; else empty
+  std::string channel_column;                     // of the table, where it holds several channels; else empty
+  std::vector<std::string> registering_channels;  // that decided the poses, as asked for; empty: the first
   Registration registration;
   Provenance provenance;
   std::optional<ResolutionReport> resolution;  // where output.resolution asks for it
+  std::optional<LabelledPlaces> labelled;      // where the template is discrete, or has symmetric units
+  VerdictOptions limits;                       // that a pose had to keep to be accepted
 };
 
 /// How many particles have a pose that may be used.

@@ -56,7 +56,7 @@ TEST_F(BatchPage, HasAStripForEveryNumberAndSaysWhichIsMissing) {
   EXPECT_THAT(page, HasSubstr("id=\"strip-resolution_nm\" data-figure=\"absent\""));
   EXPECT_THAT(page, HasSubstr("wild &amp; type"));
   EXPECT_THAT(page, HasSubstr("2 data sets: 1 done, 1 failed."));
-  EXPECT_THAT(page, HasSubstr("there is no table"));
+  EXPECT_THAT(page, HasSubstr("<li>&lt;/script&gt; failed: there is no table</li>"));
   EXPECT_THAT(page, Not(HasSubstr("\"</script>")));
   EXPECT_THAT(page, HasSubstr("-0.1000"));  // of the differences
 }

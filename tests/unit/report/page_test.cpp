@@ -24,6 +24,15 @@ TEST(ReportRecord, HoldsWhatTheRunWrote) {
   results.provenance.command = "polar run 'my pores.yaml'";
   results.provenance.input_file = {"/data/a.csv"}, results.provenance.input_sha256 = {std::string(64, 'a')};
   results.resolution = ResolutionReport();
+  const Projections half{2, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}};
+  results.resolution->data.first_projections = results.resolution->data.second_projections = half;
+  results.resolution->noise.refused = true;
+  LabelledPlaces labelled;
+  labelled.labelling.of = "symmetric units", labelled.labelling.efficiency = 0.4;
+  labelled.counts.occupancy = {0.4, 0.5}, labelled.counts.particles = {0, 3, 2},
+  labelled.counts.labels = {0, 7};
+  labelled.place_nm = Eigen::Matrix3Xd::Zero(3, 2);
+  results.labelled = labelled;
   const RunRecord r = through_file(results);
   const std::vector<PoseRow> rows = pose_rows(results);
   ASSERT_EQ(r.poses.size(), rows.size());
@@ -45,7 +54,17 @@ TEST(ReportRecord, HoldsWhatTheRunWrote) {
   EXPECT_EQ(r.input_sha256[0], std::string(64, 'a'));
   EXPECT_EQ(r.starts.size(), 2u);
   EXPECT_EQ(r.starts[0].held_out_std, results.registration.starts[0].gain_std);
-  EXPECT_TRUE(r.resolution.has_value());
+  ASSERT_TRUE(r.resolution.has_value());
+  EXPECT_EQ(r.resolution->data.first_projections.value, half.value);
+  EXPECT_EQ(r.resolution->data.second_projections.planes(), 3u);
+  EXPECT_TRUE(r.resolution->noise.refused);
+  ASSERT_TRUE(r.labelling.has_value());
+  EXPECT_EQ(r.labelling->of, "symmetric units");
+  EXPECT_EQ(r.labelling->efficiency, 0.4);
+  EXPECT_EQ(r.labelling->particles_with, (std::vector<double>{0, 3, 2}));
+  EXPECT_EQ(r.refused.size(), 1u);
+  EXPECT_EQ(r.refused[0].log_likelihood, results.registration.view[1].log_likelihood);
+  EXPECT_EQ(r.least_posterior_share, VerdictOptions().least_posterior_share);
   EXPECT_TRUE(r.history.empty());
 }
 
@@ -101,7 +120,11 @@ TEST(ReportRecord, TakesWhatMayBeThereAndDoesWithout) {
     f.write("/run/starts/gain_std", std::vector<double>{0.5});
     f.write("/run/history/moved", std::vector<double>{5, 1});
     f.write("/run/history/escaped", std::vector<double>{2});
-    f.write("/poses/posterior_rotation_deg", std::vector<double>{7});
+    f.write("/poses/posterior_share", std::vector<double>{0.75});
+    f.write("/rejected/scores/log_likelihood", std::vector<double>{2});
+    for (const char* name : {"margin", "rotation_std_deg", "translation_std_nm", "posterior_share",
+                             "outlier_fraction", "visibility"})
+      f.write(std::string("/rejected/scores/") + name, std::vector<double>{0.5});
     f.make_group("/resolution/halves");
     f.write("/resolution/curve/particles", std::vector<double>{1, 2});
     f.write("/resolution/curve/resolution_nm", std::vector<double>{9, 8});
@@ -111,8 +134,10 @@ TEST(ReportRecord, TakesWhatMayBeThereAndDoesWithout) {
   ASSERT_EQ(full.history.size(), 2u);
   EXPECT_EQ(full.history[0].escaped, 2);
   EXPECT_TRUE(std::isnan(full.history[1].escaped));
-  EXPECT_EQ(full.fit[0].posterior_rotation_deg, 7);
-  EXPECT_TRUE(std::isnan(full.fit[0].posterior_translation_nm));
+  EXPECT_EQ(full.fit[0].posterior_share, 0.75);
+  ASSERT_EQ(full.refused.size(), 1u);
+  EXPECT_EQ(full.refused[0].log_likelihood, 2);
+  EXPECT_EQ(full.refused[0].fit.visibility, 0.5);
   EXPECT_EQ(full.curve_resolution_nm, (std::vector<double>{9, 8}));
   EXPECT_THAT(report_page(full, "full"), HasSubstr("Two structures fit."));
 }

@@ -80,6 +80,19 @@ TEST_F(Sections, ResolutionSaysWhereTheCurveFallsOrThatItNeverDoes) {
               HasSubstr("The halves: falls below the threshold at a period of 2.50 nm"));  // 1 / 0.4
   EXPECT_THAT(notes(s), HasSubstr("The control on noise: already below the threshold"));
   EXPECT_THAT(figure(s, "fsc").svg, HasSubstr(">2.50 nm<"));
+  EXPECT_THAT(figure(s, "half-maps").caption, HasSubstr("earlier version"));
+  Projections first{2, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}}, second = first;
+  record_.resolution->data.first_projections = first, record_.resolution->data.second_projections = second;
+  s = resolution_section(Subject(record_));
+  for (const char* id : {"half-1-xy", "half-2-xy", "half-1-xz", "half-2-xz"})
+    EXPECT_THAT(figure(s, id).svg, HasSubstr("<image")) << id;
+  EXPECT_THAT(figure(s, "half-1-xy").caption, HasSubstr("6 particles"));
+  EXPECT_THAT(figure(s, "noise-half-maps").caption, HasSubstr("no pose"));
+  record_.resolution->noise.first_projections = first, record_.resolution->noise.second_projections = second;
+  record_.resolution->noise.refused = true;
+  s = resolution_section(Subject(record_));
+  EXPECT_THAT(figure(s, "noise-half-2-xy").svg, HasSubstr("<image"));
+  EXPECT_THAT(figure(s, "fsc").caption, HasSubstr("refused"));
   record_.resolution->data = halves({1, 1, 1, 1, 1});
   s = resolution_section(Subject(record_));
   EXPECT_THAT(notes(s), HasSubstr("never falls below the threshold"));
@@ -89,7 +102,8 @@ TEST_F(Sections, ResolutionSaysWhereTheCurveFallsOrThatItNeverDoes) {
   EXPECT_THAT(figure(resolution_section(Subject(record_)), "resolution-curve").caption,
               Not(HasSubstr("share the poses")));
   record_.resolution->noise = HalfMaps();
-  EXPECT_THAT(notes(resolution_section(Subject(record_))), HasSubstr("no particle of pure noise got a pose"));
+  EXPECT_THAT(notes(resolution_section(Subject(record_))),
+              HasSubstr("no particle of pure noise got a pose that was accepted"));
 }
 
 TEST_F(Sections, MoreParticlesOfOneStructureResolveMore) {
@@ -143,6 +157,15 @@ TEST_F(Sections, ScoresDrawTheCutAndNameEveryRejection) {
   EXPECT_THAT(figure(s, "log-likelihood").caption, HasSubstr("Beyond: 1 particle"));
   EXPECT_THAT(figure(s, "margin").caption, HasSubstr("have 0.5"));  // all alike: said, not drawn
   EXPECT_THAT(figure(s, "rejections").caption, HasSubstr("1: made up, to test"));
+  ParticleScores refused;
+  refused.log_likelihood = 0.5, refused.fit.posterior_share = 0.7;
+  record_.refused = {refused, refused};
+  for (ParticleFit& fit : record_.fit) fit.posterior_share = 0.99;
+  record_.least_posterior_share = 0.9;
+  const Figure share = figure(scores_section(Subject(record_)), "posterior-share");
+  EXPECT_THAT(share.svg, HasSubstr(">0.900<"));
+  EXPECT_THAT(share.svg, HasSubstr(">rejected<"));
+  EXPECT_THAT(share.caption, HasSubstr("At least 0.900 is accepted (dashed): 2 particles beyond"));
   for (PoseRow& p : record_.poses) p.accepted = true;
   EXPECT_THAT(figure(scores_section(Subject(record_)), "rejections").svg, IsEmpty());
 }
@@ -164,23 +187,20 @@ TEST_F(Sections, GalleryShowsBestWorstAndRejectedOrSaysWhyNot) {
               HasSubstr("No particle was rejected"));
 }
 
-TEST_F(Sections, OccupancyCountsParticlesThatShowAUnit) {
-  EXPECT_THAT(figure(labelling_section(Subject(record_)), "occupancy").caption,
-              HasSubstr("registration.symmetry"));
-  SymmetryRecord y;
-  y.group = "C2";
-  y.unit_nm = Eigen::Matrix3Xd(3, 2);
-  y.unit_nm.col(0) = Eigen::Vector3d(1000, 0, 0), y.unit_nm.col(1) = Eigen::Vector3d(-1000, 0, 0);
-  record_.symmetry = y;
-  smlm::LocalisationTable& t = record_.result.superparticle;
-  // Unit 1 is shown by every particle, unit 2 by the first alone.
-  for (std::size_t i = 0; i < t.size(); ++i)
-    t.position_nm[i] = {t.particle[i] == 0 && i % 2 == 0 ? -1000.0 : 1000.0, 0, 0};
+TEST_F(Sections, OccupancyIsThatOfTheRun) {
+  EXPECT_THAT(figure(labelling_section(Subject(record_)), "occupancy").caption, HasSubstr("has neither"));
+  LabellingRecord l;
+  l.of = "symmetric units", l.efficiency = 0.545, l.low = 0.4, l.high = 0.7;
+  l.occupancy = {1, 1.0 / 11};
+  l.particles_with = {0, 10, 1}, l.labels_of = {0, 4, 8};
+  record_.labelling = l;
   const Section s = labelling_section(Subject(record_));
   EXPECT_THAT(figure(s, "occupancy").svg, HasSubstr("100.0 %"));
   EXPECT_THAT(figure(s, "occupancy").svg, HasSubstr("9.1 % (2 % to 38 %)"));  // Wilson, 1 of 11
-  EXPECT_THAT(notes(s), HasSubstr("54.5 %"));
+  EXPECT_THAT(notes(s), HasSubstr("54.5 % (40.0 % to 70.0 %), of 2 symmetric units"));
+  EXPECT_THAT(figure(s, "labelled-a-particle").svg, HasSubstr("histogram of 11 values"));
   EXPECT_THAT(figure(s, "blinks").svg, HasSubstr("histogram of 12 values"));
+  EXPECT_EQ(key_numbers(record_).back().value, "54.5 %");
 }
 
 TEST_F(Sections, ResidualsOfATruthfulTableAreNormal) {
@@ -224,11 +244,14 @@ TEST_F(Sections, ChannelsHaveAColourEach) {
   for (std::size_t i = 0; i < record_.result.superparticle.size(); ++i)
     channel.values.push_back(static_cast<double>(i % 2));
   record_.result.superparticle.extra.push_back(channel);
-  EXPECT_THAT(figure(average_section(Subject(record_)), "projection-xy").svg, Not(HasSubstr("on-picture t0")));
+  EXPECT_THAT(figure(average_section(Subject(record_)), "projection-xy").svg,
+              Not(HasSubstr("on-picture t0")));
   record_.channel_column = "colour";
   const std::string svg = figure(average_section(Subject(record_)), "projection-xy").svg;
   EXPECT_THAT(svg, HasSubstr("on-picture t0"));
   EXPECT_THAT(svg, HasSubstr(">WGA<"));
+  record_.result.superparticle.extra.back().labels.clear();  // channels that are numbers
+  EXPECT_THAT(figure(average_section(Subject(record_)), "projection-xy").svg, HasSubstr(">channel 1<"));
 }
 
 TEST_F(Sections, ToRunItAgainSaysWhatIsNotRecorded) {

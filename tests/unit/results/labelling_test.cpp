@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/rng.hpp"
+#include "polar/core/symmetry_group.hpp"
 #include "polar/results/results.hpp"
 #include "polar/results/sites.hpp"
 #include "polar/results/units.hpp"
@@ -16,7 +18,16 @@
 namespace polar {
 namespace {
 
-std::vector<int> counts(double efficiency, int sites, int particles, int fewest, std::uint64_t trial) {
+// Counts that nobody doubts.
+PlaceCounts certain(const std::vector<int>& occupied, int sites) {
+  PlaceCounts c;
+  c.occupancy.assign(static_cast<std::size_t>(sites), 0.5);
+  c.particles.assign(static_cast<std::size_t>(sites) + 1, 0.0);
+  for (const int n : occupied) c.particles[static_cast<std::size_t>(n)] += 1;
+  return c;
+}
+
+PlaceCounts counts(double efficiency, int sites, int particles, int fewest, std::uint64_t trial) {
   std::vector<int> all;
   KeyedRandom random(11, trial, 1);
   while (static_cast<int>(all.size()) < particles) {
@@ -24,7 +35,7 @@ std::vector<int> counts(double efficiency, int sites, int particles, int fewest,
     for (int k = 0; k < sites; ++k) n += random.uniform() < efficiency ? 1 : 0;
     if (n >= fewest) all.push_back(n);
   }
-  return all;
+  return certain(all, sites);
 }
 
 // Of 200 simulated sets at each efficiency the interval holds the truth in 95 %: at least 182, four standard
@@ -34,12 +45,22 @@ TEST(Labelling, IntervalsHoldTheTruth) {
     for (const int fewest : {1, 3}) {
       int held = 0;
       for (std::uint64_t trial = 0; trial < 200; ++trial) {
-        const Labelling l = labelling_efficiency(counts(truth, 8, 60, fewest, trial), 8, 1);
+        const Labelling l = labelling_efficiency(counts(truth, 8, 60, fewest, trial), 1);
         held += l.low <= truth && truth <= l.high ? 1 : 0;
       }
       EXPECT_GE(held, 182) << truth << " of particles with " << fewest << " sites or more";
       EXPECT_LE(held, 200);
     }
+}
+
+// Where a third of the variance is doubt, the interval is as wide as that of a third fewer particles.
+TEST(Labelling, DoubtWidensTheInterval) {
+  PlaceCounts c = counts(0.5, 8, 400, 1, 1);
+  const Labelling sure = labelling_efficiency(c, 1);
+  c.doubt = 8 * 0.25 / 3;
+  const Labelling doubtful = labelling_efficiency(c, 1);
+  EXPECT_NEAR(doubtful.information, 2.0 / 3, 0.02);
+  EXPECT_NEAR((doubtful.high - doubtful.low) / (sure.high - sure.low), std::sqrt(1.5), 0.05);
 }
 
 TEST(Labelling, SitesOfSeveralLabels) {
@@ -50,7 +71,7 @@ TEST(Labelling, SitesOfSeveralLabels) {
     for (int k = 0; k < 16; ++k) n += random.uniform() < 0.4 || random.uniform() < 0.4 ? 1 : 0;
     occupied.push_back(n);
   }
-  const Labelling l = labelling_efficiency(occupied, 16, 2);
+  const Labelling l = labelling_efficiency(certain(occupied, 16), 2);
   EXPECT_NEAR(l.efficiency, 0.4, 0.02);
   EXPECT_LT(l.low, l.efficiency);
   EXPECT_GT(l.high, l.efficiency);
@@ -58,16 +79,16 @@ TEST(Labelling, SitesOfSeveralLabels) {
 }
 
 TEST(Labelling, EveryAndOneSite) {
-  EXPECT_GT(labelling_efficiency(std::vector<int>(20, 6), 6, 1).efficiency, 0.999);
-  EXPECT_GT(labelling_efficiency(std::vector<int>(20, 6), 6, 1).low, 0.95);
-  EXPECT_LT(labelling_efficiency(std::vector<int>(20, 1), 6, 1).efficiency, 0.01);
+  EXPECT_GT(labelling_efficiency(certain(std::vector<int>(20, 6), 6), 1).efficiency, 0.999);
+  EXPECT_GT(labelling_efficiency(certain(std::vector<int>(20, 6), 6), 1).low, 0.95);
+  EXPECT_LT(labelling_efficiency(certain(std::vector<int>(20, 1), 6), 1).efficiency, 0.01);
 }
 
 // Five of 24 particles lack one of 17 sites, or two: nothing is missing, and the efficiency is that share.
 TEST(Labelling, NearlyEverySite) {
   std::vector<int> occupied(19, 17);
   occupied.insert(occupied.end(), {16, 16, 16, 16, 15});
-  const Labelling l = labelling_efficiency(occupied, 17, 1);
+  const Labelling l = labelling_efficiency(certain(occupied, 17), 1);
   EXPECT_EQ(l.particles, 24u);
   EXPECT_NEAR(l.efficiency, 1 - 6.0 / (24 * 17), 0.01);
   EXPECT_GT(l.low, 0.95);
@@ -77,8 +98,8 @@ TEST(Labelling, NearlyEverySite) {
 TEST(Labelling, DispersionWidensTheInterval) {
   std::vector<int> together;
   for (int i = 0; i < 30; ++i) together.push_back(i % 2 == 0 ? 2 : 6);
-  const Labelling wide = labelling_efficiency(together, 8, 1);
-  const Labelling narrow = labelling_efficiency(std::vector<int>(30, 4), 8, 1);
+  const Labelling wide = labelling_efficiency(certain(together, 8), 1);
+  const Labelling narrow = labelling_efficiency(certain(std::vector<int>(30, 4), 8), 1);
   EXPECT_GT(wide.dispersion, 1.5);
   EXPECT_GT(wide.high - wide.low, 1.2 * (narrow.high - narrow.low));
 }
@@ -121,7 +142,7 @@ TEST_F(Sites, LabellingOfSimulatedParticlesIsTheirs) {
     for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
       const DiscreteSites found = find_sites(aligned_rings(truth, 60, seed), {});
       ASSERT_EQ(found.site.size(), 8u) << truth << " " << seed << " " << found.reason;
-      const Labelling l = labelling_efficiency(found.occupied, 8, 1);
+      const Labelling l = labelling_efficiency(found.counts, 1);
       held += l.low <= truth && truth <= l.high ? 1 : 0;
     }
     EXPECT_GE(held, 2) << truth;
@@ -130,13 +151,13 @@ TEST_F(Sites, LabellingOfSimulatedParticlesIsTheirs) {
 
 class Units : public ::testing::Test {
  protected:
-  // Corners of a pore with two labels 12 nm apart.
-  static std::optional<Labelling> labelling(double efficiency, std::uint64_t seed) {
+  // Corners of a pore with two labels 12 nm apart, neighbours 40 nm, at a lateral uncertainty of `sigma_nm`.
+  static std::optional<Labelling> labelling(double efficiency, double sigma_nm, std::uint64_t seed) {
     SimulationOptions options;
     options.particles = 60;
     options.seed = seed;
     options.labelling_efficiency = efficiency;
-    options.sigma_xy_nm = {5, 7};
+    options.sigma_xy_nm = {sigma_nm - 1, sigma_nm + 1};
     options.sigma_z_factor = {1, 2};
     options.cramer_rao = false;
     const Structure pore = make_structure({});
@@ -144,12 +165,14 @@ class Units : public ::testing::Test {
     const smlm::LocalisationTable aligned = superparticle(r);
     TemplateSites fused;
     fused.centre_nm = pore.site_nm;
-    fused.weight = Eigen::VectorXd::Constant(pore.site_nm.cols(), 1.0 / static_cast<double>(pore.site_nm.cols()));
-    fused.width_nm = 3;
-    const UnitOccupancy found = occupied_units(aligned, fused, pore.site_nm(Eigen::all, corners(pore)), 1e-9);
-    EXPECT_EQ(found.units, 16) << found.reason;
-    if (found.units == 0) return std::nullopt;
-    return labelling_efficiency(found.occupied, found.units, 2);
+    fused.weight =
+        Eigen::VectorXd::Constant(pore.site_nm.cols(), 1.0 / static_cast<double>(pore.site_nm.cols()));
+    fused.width_nm = options.label_size_nm;
+    const UnitOccupancy found =
+        occupied_units(aligned, fused, pore.site_nm(Eigen::all, corners(pore)), 1e-7, 1e-3);
+    EXPECT_EQ(found.counts.occupancy.size(), 16u) << found.reason;
+    if (!found.counts.any()) return std::nullopt;
+    return labelling_efficiency(found.counts, 2);
   }
   // One site of each: no two nearer than 20 nm.
   static std::vector<Eigen::Index> corners(const Structure& pore) {
@@ -163,18 +186,23 @@ class Units : public ::testing::Test {
   }
 };
 
-// Of 20 simulated sets at each efficiency the interval holds the truth in 95 %: 16 is three standard errors below.
+// Where a localisation often lies nearer to a neighbour than to its own unit: of 64 simulated sets the
+// interval holds the truth in 95 %: 55 is three standard errors below.
 TEST_F(Units, LabellingOfSimulatedParticlesIsTheirs) {
+  constexpr int kTrials = 16;
+  int held = 0;
   for (const double truth : {0.3, 0.5, 0.7, 0.9}) {
-    int held = 0;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      const std::optional<Labelling> l = labelling(truth, seed);
+    double mean = 0;
+    for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
+      const std::optional<Labelling> l = labelling(truth, 9, seed);
       ASSERT_TRUE(l);
       held += l->low <= truth && truth <= l->high ? 1 : 0;
+      mean += l->efficiency / kTrials;
     }
-    RecordProperty("held_" + std::to_string(std::lround(100 * truth)), held);
-    EXPECT_GE(held, 16) << truth;
+    EXPECT_NEAR(mean, truth, 0.015);
   }
+  RecordProperty("held", held);
+  EXPECT_GE(held, 55);
 }
 
 TEST_F(Units, ThatRunIntoOneAnotherAreNotCounted) {
@@ -187,8 +215,10 @@ TEST_F(Units, ThatRunIntoOneAnotherAreNotCounted) {
   fused.centre_nm = Eigen::Matrix3Xd::Zero(3, 2);
   fused.centre_nm(0, 1) = 20;
   fused.weight = Eigen::Vector2d(0.5, 0.5);
-  EXPECT_THAT(occupied_units(t, fused, fused.centre_nm, 1e-9).reason, ::testing::HasSubstr("not far enough apart"));
-  EXPECT_THAT(occupied_units(t, fused, Eigen::Matrix3Xd(3, 0), 1e-9).reason, ::testing::HasSubstr("no symmetric units"));
+  EXPECT_THAT(occupied_units(t, fused, fused.centre_nm, 1e-9, 1e-3).reason,
+              ::testing::HasSubstr("not far enough apart"));
+  EXPECT_THAT(occupied_units(t, fused, Eigen::Matrix3Xd(3, 0), 1e-9, 1e-3).reason,
+              ::testing::HasSubstr("no symmetric units"));
 }
 
 TEST_F(Sites, ACloudHasNone) {
@@ -206,14 +236,40 @@ TEST_F(Sites, ACloudHasNone) {
   EXPECT_FALSE(find_sites(smlm::LocalisationTable{}, {}).reason.empty());
 }
 
-TEST_F(Sites, AHotSpotIsNamed) {
+DiscreteSites ring_of(std::size_t sites, double occupancy) {
   DiscreteSites found;
-  found.occupied.assign(100, 3);
-  for (int k = 0; k < 6; ++k) {
+  found.counts.particles = std::vector<double>(sites + 1, 100.0 / static_cast<double>(sites + 1));
+  for (std::size_t k = 0; k < sites; ++k) {
+    const double azimuth = kTwoPi * static_cast<double>(k) / static_cast<double>(sites);
     found.site.emplace_back();
-    found.site.back().occupancy = k == 2 ? 0.95 : 0.5;
+    found.site.back().centre_nm = {50 * std::cos(azimuth), 50 * std::sin(azimuth), 0};
+    found.site.back().occupancy = occupancy;
+    found.orbit.push_back(k);
   }
+  return found;
+}
+
+TEST_F(Sites, AHotSpotIsNamed) {
+  DiscreteSites found = ring_of(6, 0.5);
+  found.site[2].occupancy = 0.95;
   EXPECT_EQ(hot_spots(found), std::vector<std::size_t>{2});
+}
+
+// Labels that gather at one image of a unit are a convention of the poses; a place of its own that every
+// particle shows is not.
+TEST_F(Sites, UnderAGroupOnlyPlacesOfTheirOwnAreHot) {
+  DiscreteSites found = ring_of(6, 0.5);
+  found.site[2].occupancy = 0.95;
+  const Pose canonical{Eigen::Matrix3d::Identity(), {0, 0, 1}};
+  set_orbits(found, symmetry_rotations("C6"), canonical);
+  EXPECT_EQ(found.orbit, std::vector<std::size_t>(6, 0));
+  EXPECT_TRUE(hot_spots(found).empty());
+  found.site.emplace_back();
+  found.site.back().occupancy = 0.95;
+  found.orbit.push_back(6);
+  set_orbits(found, symmetry_rotations("C6"), canonical);
+  EXPECT_EQ(found.orbit.back(), 6u);
+  EXPECT_EQ(hot_spots(found), std::vector<std::size_t>{6});
 }
 
 }  // namespace

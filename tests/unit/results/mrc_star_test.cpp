@@ -85,6 +85,8 @@ TEST(Star, HoldsAcceptedParticlesOnly) {
   EXPECT_THAT(text, HasSubstr("\n\"cell 1:3\" "));
   EXPECT_THAT(text, ::testing::Not(HasSubstr("rejected")));
   EXPECT_THAT(text, HasSubstr("_rlnAngleTilt #9\n"));
+  for (const char* needed : {"_rlnImagePixelSize #3\n", "_rlnVoltage #5\n", "_rlnSphericalAberration #6\n"})
+    EXPECT_THAT(text, HasSubstr(needed)) << "without it RELION reads no optics group";
   EXPECT_THAT(text, HasSubstr(" 10 0 0 0 0 "));
 }
 
