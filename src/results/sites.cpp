@@ -9,6 +9,7 @@
 #include "emitter.hpp"
 #include "occupied_sites.hpp"
 #include "polar/core/constants.hpp"
+#include "polar/core/covariance3.hpp"
 #include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
@@ -79,7 +80,7 @@ results::Emitter emitter(const Model& m, const Eigen::Matrix3d& c, const Eigen::
 // Probability of every site, and at the end of the background, for one localisation.
 std::vector<double> belongs_to(const Model& m, const Table& t, std::size_t row,
                                std::vector<results::Emitter>& emitters) {
-  const Eigen::Matrix3d c = results::covariance(t, row);
+  const Eigen::Matrix3d c = matrix(t.covariance_nm2[row]);
   const Eigen::Vector3d x(t.position_nm[row].data());
   std::vector<double> p(m.site.size() + 1);
   double sum = p.back() = m.background_share * m.background_density;
@@ -201,7 +202,7 @@ void count_occupied(const Model& m, const Table& t, DiscreteSites& out) {
     for (std::size_t i = 0; i < own.size(); ++i)
       for (std::size_t k = 0; k < m.site.size(); ++k)
         density(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-            emitter(m, results::covariance(t, own[i]), Eigen::Vector3d(t.position_nm[own[i]].data()), k)
+            emitter(m, matrix(t.covariance_nm2[own[i]]), Eigen::Vector3d(t.position_nm[own[i]].data()), k)
                 .density;
     int n = 0;
     for (const std::size_t k : results::occupied_sites(density, background)) {

@@ -7,6 +7,7 @@
 
 #include "emitter.hpp"
 #include "occupied_sites.hpp"
+#include "polar/core/covariance3.hpp"
 #include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
 
@@ -81,7 +82,7 @@ UnitOccupancy occupied_units(const smlm::LocalisationTable& t, const TemplateSit
     density = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows[p].size()), unit_nm.cols());
     for (std::size_t i = 0; i < rows[p].size(); ++i) {
       const std::size_t row = rows[p][i];
-      const Eigen::Matrix3d c = results::covariance(t, row);
+      const Eigen::Matrix3d c = matrix(t.covariance_nm2[row]);
       const Eigen::Vector3d x(t.position_nm[row].data());
       for (std::size_t u = 0; u < units.size(); ++u)
         for (const Site& s : units[u].centre)
