@@ -16,7 +16,9 @@ function(polar_layer name)
   cmake_parse_arguments(LAYER "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   add_library(polar_${name} STATIC ${LAYER_SOURCES})
   add_library(polar::${name} ALIAS polar_${name})
-  target_include_directories(polar_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include
+  set_target_properties(polar_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(polar_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                  $<INSTALL_INTERFACE:include>
                                            PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(polar_${name} PUBLIC ${LAYER_DEPENDS}
                                       PRIVATE polar_options ${LAYER_PRIVATE_DEPENDS})

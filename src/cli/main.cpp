@@ -4,10 +4,9 @@
 
 #include <cstdio>
 
-#include "command.hpp"
+#include "app.hpp"
 #include "command_line.hpp"
 #include "last_words.hpp"
-#include "polar/pipeline/version.hpp"
 #include "smlm/error.hpp"
 
 namespace {
@@ -29,24 +28,13 @@ int delivered(int code) {
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App app{"polar: aligns copies of one structure in localisation microscopy"};
-  app.set_version_flag("--version", polar::program_version());
-  app.require_subcommand(1);
   polar::cli::remember_command(argc, argv);
   polar::cli::Action action;
-  polar::cli::add_run(app, action);
-  polar::cli::add_batch(app, action);
-  polar::cli::add_simulate(app, action);
-  polar::cli::add_export(app, action);
-  polar::cli::add_apply(app, action);
-  polar::cli::add_report(app, action);
-  polar::cli::add_evaluate(app, action);
-  polar::cli::add_inspect(app, action);
-  polar::cli::add_train(app, action);
+  const std::unique_ptr<CLI::App> app = polar::cli::make_app(action);
   try {
-    app.parse(argc, argv);
+    app->parse(argc, argv);
   } catch (const CLI::Success& e) {  // --help, --version
-    return app.exit(e);
+    return app->exit(e);
   }
   return action();
 }

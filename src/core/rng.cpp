@@ -1,5 +1,8 @@
 #include "polar/core/rng.hpp"
 
+#include <Random123/philox.h>
+#undef philox4x32  // a macro of the library
+
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -10,9 +13,6 @@
 namespace polar {
 
 namespace {
-constexpr std::uint32_t kMultiply0 = 0xD2511F53, kMultiply1 = 0xCD9E8D57;
-constexpr std::uint32_t kWeyl0 = 0x9E3779B9, kWeyl1 = 0xBB67AE85;
-constexpr int kRounds = 10;
 constexpr double kLargeMean = 30.0;  // exp(-30) is still far from underflow
 
 std::uint32_t low(std::uint64_t v) { return static_cast<std::uint32_t>(v); }
@@ -20,14 +20,10 @@ std::uint32_t high(std::uint64_t v) { return static_cast<std::uint32_t>(v >> 32)
 }  // namespace
 
 std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c, std::array<std::uint32_t, 2> k) {
-  for (int round = 0; round < kRounds; ++round) {
-    const std::uint64_t p0 = std::uint64_t{kMultiply0} * c[0];
-    const std::uint64_t p1 = std::uint64_t{kMultiply1} * c[2];
-    c = {high(p1) ^ c[1] ^ k[0], low(p1), high(p0) ^ c[3] ^ k[1], low(p0)};
-    k[0] += kWeyl0;
-    k[1] += kWeyl1;
-  }
-  return c;
+  constexpr int kRounds = 10;
+  const r123::Philox4x32_R<kRounds>::ctr_type block =
+      r123::Philox4x32_R<kRounds>()({{c[0], c[1], c[2], c[3]}}, {{k[0], k[1]}});
+  return {block[0], block[1], block[2], block[3]};
 }
 
 KeyedRandom::KeyedRandom(std::uint64_t seed, std::uint64_t item, std::uint32_t stage)

@@ -20,6 +20,7 @@ std::vector<fs::path> places() {
   if (!program.empty())
     found.push_back(program.parent_path().parent_path() / "share" / "polar-smlm" / "weights" / kFile);
   found.push_back(fs::path(POLAR_INSTALLED_WEIGHTS) / kFile);
+  found.push_back(fs::path("/usr/share/polar-smlm/weights") / kFile);  // of a package
   found.push_back(fs::path(POLAR_SOURCE_WEIGHTS) / kFile);
   return found;
 }

@@ -5,6 +5,7 @@
 
 #include "plot.hpp"
 #include "polar/core/constants.hpp"
+#include "polar/core/covariance3.hpp"
 #include "polar/core/median.hpp"
 #include "section.hpp"
 #include "text.hpp"
@@ -24,13 +25,9 @@ double found(double stated_nm, double factor, double extra_nm) {
 // Standard deviations across and along the optical axis of a localisation's own particle, as stated.
 std::array<double, 2> stated_nm(const RunRecord& record, std::size_t row) {
   const smlm::LocalisationTable& t = record.result.superparticle;
-  const smlm::Covariance& c = t.covariance_nm2[row];
-  Eigen::Matrix3d m;
-  m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
-      double(c[4]), double(c[5]);
   const Eigen::Matrix3d& r =
       record.poses[static_cast<std::size_t>(t.particle[row])].template_from_view->rotation;
-  const Eigen::Matrix3d in_view = r.transpose() * m * r;
+  const Eigen::Matrix3d in_view = r.transpose() * matrix(t.covariance_nm2[row]) * r;
   return {std::sqrt(std::max(0.0, (in_view(0, 0) + in_view(1, 1)) / 2)),
           std::sqrt(std::max(0.0, in_view(2, 2)))};
 }

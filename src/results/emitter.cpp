@@ -28,14 +28,6 @@ Emitter emitter(const Eigen::Matrix3d& c3, const Eigen::Vector3d& x3, const Site
 }
 }  // namespace
 
-Eigen::Matrix3d covariance(const smlm::LocalisationTable& table, std::size_t row) {
-  const smlm::Covariance& c = table.covariance_nm2[row];
-  Eigen::Matrix3d m;
-  m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
-      double(c[4]), double(c[5]);
-  return m;
-}
-
 double sigma_nm(const smlm::LocalisationTable& table, std::size_t row) {
   const smlm::Covariance& c = table.covariance_nm2[row];
   return std::sqrt(table.planar ? double(c[0] + c[3]) / 2 : double(c[0] + c[3] + c[5]) / 3);

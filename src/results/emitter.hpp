@@ -9,8 +9,6 @@
 
 namespace polar::results {
 
-Eigen::Matrix3d covariance(const smlm::LocalisationTable& table, std::size_t row);
-
 /// Root mean square over the axes.
 double sigma_nm(const smlm::LocalisationTable& table, std::size_t row);
 

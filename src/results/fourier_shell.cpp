@@ -2,13 +2,7 @@
 
 #include <cmath>
 #include <complex>
-// The module's own casts are not ours to warn about.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-#pragma GCC diagnostic ignored "-Wshadow"
 #include <unsupported/Eigen/FFT>
-#pragma GCC diagnostic pop
 
 #include "polar/core/parallel.hpp"
 #include "smlm/error.hpp"

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "emitter.hpp"
+#include "polar/core/covariance3.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
 
@@ -144,7 +145,7 @@ std::vector<ParticleCandidates> candidates_of(
   parallel_for(rows.size(), [&](std::size_t p) {
     for (const std::size_t row : rows[p]) {
       particles[p].emplace_back();
-      const Eigen::Matrix3d c = covariance(t, row);
+      const Eigen::Matrix3d c = matrix(t.covariance_nm2[row]);
       const Eigen::Vector3d x(t.position_nm[row].data());
       for (std::size_t k = 0; k < places; ++k)
         if (const double here = density(c, x, k); here > 0)

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polar/core/covariance3.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/fusion/search_again.hpp"
 #include "polar/results/half_maps.hpp"
@@ -32,7 +33,7 @@ View map_view(const smlm::LocalisationTable& map, double scale_nm, Eigen::Vector
   const auto unit = static_cast<float>(1 / (scale_nm * scale_nm));
   for (const smlm::Covariance& c : map.covariance_nm2) {
     const float variance = unit * (map.planar ? (c[0] + c[3]) / 2 : (c[0] + c[3] + c[5]) / 3);
-    view.covariance.push_back({variance, 0, 0, variance, 0, variance});
+    view.covariance.push_back(isotropic_covariance(variance));
   }
   return view;
 }

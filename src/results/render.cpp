@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "polar/core/constants.hpp"
+#include "polar/core/covariance3.hpp"
 #include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/fusion/effective.hpp"
@@ -47,10 +48,7 @@ Matrix widened(const Matrix& m, double least_nm) {
 
 Gaussian gaussian(const smlm::LocalisationTable& table, std::size_t row, double voxel_nm) {
   const auto& x = table.position_nm[row];
-  const smlm::Covariance& c = table.covariance_nm2[row];
-  Eigen::Matrix3d m;
-  m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
-      double(c[4]), double(c[5]);
+  Eigen::Matrix3d m = matrix(table.covariance_nm2[row]);
   for (int axis = 0; axis < 3; ++axis)
     if (!(m(axis, axis) > 0)) m(axis, axis) = double(kFallbackVariance_nm2);
   const double least_nm = voxel_nm / 2;  // finer, and what the voxels hold would depend on where it falls

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "polar/core/constants.hpp"
+#include "polar/core/covariance3.hpp"
 #include "polar/core/so3.hpp"
 
 namespace polar {
@@ -15,11 +16,7 @@ std::size_t accepted_particles(const Results& results) {
 }
 
 smlm::Covariance rotated(const Eigen::Matrix3d& r, const smlm::Covariance& c) {
-  Eigen::Matrix3d m;
-  m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
-      double(c[4]), double(c[5]);
-  const Eigen::Matrix3f s = (r * m * r.transpose()).cast<float>();
-  return {s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2)};
+  return symmetric3(r * matrix(c) * r.transpose());
 }
 
 smlm::LocalisationTable rows_to_draw(const smlm::LocalisationTable& table, const std::vector<bool>& wanted) {

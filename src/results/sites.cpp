@@ -10,6 +10,7 @@
 #include "emitter.hpp"
 #include "label_counts.hpp"
 #include "polar/core/constants.hpp"
+#include "polar/core/covariance3.hpp"
 #include "polar/core/median.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/core/rng.hpp"
@@ -80,7 +81,7 @@ results::Emitter emitter(const Model& m, const Eigen::Matrix3d& c, const Eigen::
 // Probability of every site, and at the end of the background, for one localisation.
 std::vector<double> belongs_to(const Model& m, const Table& t, std::size_t row,
                                std::vector<results::Emitter>& emitters) {
-  const Eigen::Matrix3d c = results::covariance(t, row);
+  const Eigen::Matrix3d c = matrix(t.covariance_nm2[row]);
   const Eigen::Vector3d x(t.position_nm[row].data());
   std::vector<double> p(m.site.size() + 1);
   double sum = p.back() = m.background_share * m.background_density;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "polar/core/constants.hpp"
+#include "polar/core/covariance3.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 
@@ -21,9 +22,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 Eigen::Matrix3d widened(const smlm::Covariance& c, const StructureModel& model) {
-  Eigen::Matrix3d m;
-  m << double(c[0]), double(c[1]), double(c[2]), double(c[1]), double(c[3]), double(c[4]), double(c[2]),
-      double(c[4]), double(c[5]);
+  Eigen::Matrix3d m = matrix(c);
   m.diagonal().array() += model.label_size_nm * model.label_size_nm;
   if (model.planar) {  // z is decoupled and carries nothing
     m.row(2).setZero();

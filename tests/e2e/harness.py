@@ -8,6 +8,17 @@ import unittest
 
 POLAR = os.environ.get("POLAR", "polar")
 HEADER = "x [nm],y [nm],z [nm],uncertainty_x [nm],uncertainty_y [nm],uncertainty_z [nm],particle\n"
+# Keys for tests that are not about what the engine finds: one start, coarse grids, few centres, all its stages.
+QUICK = """
+registration: {starts: [imaged], symmetry: none}
+expert:
+  anneal: {rotations: 300, sweeps: 8}
+  proposals: {most_proposals: 0}
+  refine: {noise_tries: 1, calibrations: 1, most_searches: 1, rotations: 500, basins: 2, fewest_centres: 32}
+  verdict: {draws: 1}
+"""
+# Particles that such a run finds.
+SMALL = "simulation: {particles: 6, blinks_mean: 3, labelling_efficiency: 1, cramer_rao: false}"
 
 
 class PolarCase(unittest.TestCase):

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import unittest
 
-from harness import HEADER, POLAR, PolarCase
+from harness import HEADER, POLAR, QUICK, SMALL, PolarCase
 
 TINY = "simulation: {particles: 3, blinks_mean: 2, cramer_rao: false}"
 
@@ -103,14 +103,14 @@ class Surroundings(PolarCase):
 
     def setUp(self):
         super().setUp()
-        self.data = self.simulate("simulation: {particles: 8, blinks_mean: 6, cramer_rao: false, orientation: in_plane}")
+        self.data = self.simulate("simulation: {particles: 8, blinks_mean: 3, cramer_rao: false, orientation: in_plane}")
         self.run_config()
 
     def on_a_terminal(self, **environment):
         """What the program draws on a terminal as its stderr."""
         ours, theirs = pty.openpty()
-        with subprocess.Popen([POLAR, *self.RUN], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs,
-                              env=environment) as process:
+        with subprocess.Popen([POLAR, "run", "quick.yaml", "--overwrite"], cwd=self.folder,
+                              stdout=subprocess.DEVNULL, stderr=theirs, env=environment) as process:
             os.close(theirs)
             drawn = b""
             with contextlib.suppress(OSError):  # what a terminal says when its other end is closed
@@ -121,6 +121,8 @@ class Surroundings(PolarCase):
         return drawn
 
     def test_terminals(self):
+        self.simulate(SMALL, "small")
+        self.run_config("small/localisations.csv", QUICK, "quick.yaml")
         self.assertIn(b"\r", self.on_a_terminal(TERM="xterm"))
         for environment in ({"TERM": "dumb"}, {}):  # neither a terminal that draws, nor HOME, nor PATH
             self.assertNotIn(b"\x1b", self.on_a_terminal(**environment))

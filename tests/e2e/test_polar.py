@@ -11,10 +11,9 @@ import time
 import unittest
 from pathlib import Path
 
-from harness import HEADER, POLAR, PolarCase
+from harness import HEADER, POLAR, QUICK, SMALL, PolarCase
 
 ORIGAMI = Path(__file__).resolve().parents[2] / "configs/studies/structures/origami.csv"
-SMALL = "simulation: {particles: 6, blinks_mean: 3, cramer_rao: false}"
 PORES = "simulation: {particles: 30, blinks_mean: 10, sigma_xy_nm: [2, 5], cramer_rao: true}"
 
 
@@ -101,10 +100,11 @@ class BadInput(PolarCase):
         self.fails(2, "--to", "export", "results.h5", "--format", "jpeg")
 
     def test_memory_limit_is_6(self):
-        config = self.write("big.yaml", "simulation: {particles: 20000, sampling: points, points: 20000}\n")
+        config = self.write("big.yaml", "simulation: {particles: 20000, sampling: points, points: 20000,"
+                            " cramer_rao: false}\n")
 
         def limited():
-            resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 28, 1 << 28))
         self.fails(6, "memory", "simulate", config, preexec_fn=limited)
 
 
@@ -127,7 +127,7 @@ class Outputs(PolarCase):
 
     def test_complete_directory_resume_export(self):
         self.simulate(SMALL)
-        config = self.run_config()
+        config = self.run_config(more=QUICK)
         stdout = self.ok("run", config)
         self.assertIn("accepted", stdout)
         results = self.folder / "results"
@@ -147,9 +147,10 @@ class Outputs(PolarCase):
 
     def test_logs(self):
         self.simulate(SMALL)
-        done = self.polar("run", self.run_config(), "--quiet")
+        config = self.run_config(more=QUICK)
+        done = self.polar("run", config, "--quiet")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        done = self.polar("run", self.run_config(), "--overwrite", "--json-log")
+        done = self.polar("run", config, "--overwrite", "--json-log")
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = [json.loads(line) for line in done.stderr.splitlines()]
         self.assertTrue(any(line["event"] == "progress" and line["done"] <= line["total"] for line in lines))
@@ -157,13 +158,13 @@ class Outputs(PolarCase):
     def test_the_rate_of_a_resumed_training_is_that_of_its_own_steps(self):
         config = self.write("train.yaml", "training: {clouds_per_step: 2}\n"
                             "output: {weights: w.h5, checkpoint: c.h5}\n")
-        self.ok("train", config, "--quiet", "--set", "training.steps=60")
-        done = self.polar("train", config, "--json-log", "--set", "training.steps=80")
+        self.ok("train", config, "--quiet", "--set", "training.steps=20")
+        done = self.polar("train", config, "--json-log", "--set", "training.steps=40")
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = [json.loads(line) for line in done.stderr.splitlines()]
         steps = [line for line in lines if line["event"] == "progress"]
         first, last = steps[0], steps[-1]
-        self.assertEqual((first["done"], last["done"]), (61, 80))
+        self.assertEqual((first["done"], last["done"]), (21, 40))
         measured = (last["done"] - first["done"]) / (last["time_s"] - first["time_s"])
         self.assertLess(abs(last["rate_per_s"] / measured - 1), .2)
 
@@ -180,7 +181,7 @@ class FullDisk(PolarCase):
 
     def test_every_format_fails_cleanly_wherever_the_disk_is_full(self):
         self.simulate(SMALL)
-        self.ok("run", self.run_config())
+        self.ok("run", self.run_config(more=QUICK))
         (self.folder / "out").mkdir()
         for name in self.FORMATS:
             for limit in (0, 200, 5000, 20000):
@@ -202,7 +203,7 @@ class FullDisk(PolarCase):
 
     def test_run_leaves_the_earlier_result_whole(self):
         self.simulate(SMALL)
-        config = self.run_config(more="registration: {starts: [imaged]}")  # small checkpoints
+        config = self.run_config(more=QUICK)
         self.ok("run", config)
         results = self.folder / "results"
         before = (results / "results.h5").read_bytes()
@@ -227,7 +228,7 @@ class FaultyIo(PolarCase):
     """The n-th call fails, for every n until a run passes clean."""
     def test_every_call_that_fails_is_an_error_and_leaves_whole_files(self):
         self.simulate(SMALL)
-        config = self.run_config(more="registration: {starts: [imaged]}\noutput: {formats: [csv], preview: false}\n")
+        config = self.run_config(more=QUICK + "output: {formats: [csv], preview: false}\n")
         self.ok("run", config)
         whole = {name: (self.folder / "results" / name).read_bytes() for name in ("poses.csv", "aligned.csv")}
         for fault in ("fsync", "rename", "write"):
@@ -256,7 +257,7 @@ class FaultyIo(PolarCase):
 class ClosedStreams(PolarCase):
     def test_nothing_is_printed_into_a_result(self):
         self.simulate(SMALL)
-        self.run_config()
+        self.run_config(more=QUICK)
         self.ok("run", "run.yaml", "--output", "open")
         done = subprocess.run(["sh", "-c", f"exec '{POLAR}' run run.yaml --output closed <&- >&- 2>&-"], cwd=self.folder,
                               timeout=300)
@@ -296,7 +297,7 @@ class Resume(PolarCase):
 
     def setUp(self):
         super().setUp()
-        self.simulate("simulation: {particles: 12, blinks_mean: 4, cramer_rao: false}")
+        self.simulate("simulation: {particles: 8, blinks_mean: 3, cramer_rao: false}")
         self.config = self.run_config(more="registration: {starts: [imaged]}\n"
                                            "output: {formats: [csv, vtkhdf], preview: false}\n")
 
@@ -456,7 +457,7 @@ class Recall(PolarCase):
 
 class Determinism(PolarCase):
     def test_same_bits_for_any_number_of_threads_and_any_locale(self):
-        self.simulate("simulation: {particles: 12, blinks_mean: 6, cramer_rao: false}")
+        self.simulate("simulation: {particles: 8, blinks_mean: 4, cramer_rao: false}")
         config = self.run_config()
         kept = ("poses.csv", "aligned.csv", "aligned.hdf", "template.hdf", "preview.png")
         first = None

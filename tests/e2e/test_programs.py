@@ -6,10 +6,9 @@ import pathlib
 import subprocess
 import unittest
 
-from harness import PolarCase
+from harness import QUICK, SMALL, PolarCase
 
-SMALL = "simulation: {particles: 6, blinks_mean: 3, cramer_rao: false}"
-ALL = "output: {formats: [hdf5, vtkhdf, csv, tiff, ply, picasso, thunderstorm, mrc, star]}\n"
+ALL = "output: {formats: [hdf5, vtkhdf, csv, tiff, ply, picasso, thunderstorm, mrc, star]}\n" + QUICK
 
 
 def program(variable, what):
@@ -18,10 +17,17 @@ def program(variable, what):
 
 
 class ProgramCase(PolarCase):
+    """The tests of a class read one and the same run."""
+    @classmethod
+    def setUpClass(cls):
+        cls.made = PolarCase()
+        cls.made.setUp()
+        cls.addClassCleanup(cls.made.doCleanups)
+        cls.made.simulate(SMALL)
+        cls.made.ok("run", cls.made.run_config(more=ALL))
+
     def setUp(self):
-        super().setUp()
-        self.simulate(SMALL)
-        self.ok("run", self.run_config(more=ALL))
+        self.folder = self.made.folder
         self.results = self.folder / "results"
         with (self.results / "aligned.csv").open() as table:
             self.aligned = list(csv.DictReader(table))
@@ -45,47 +51,51 @@ class ProgramCase(PolarCase):
             self.assertLessEqual(abs(a - b), tolerance)
 
 
-POINTS = """
+# Everything in one process, which takes seconds to start.
+PARAVIEW = """
 import json
 from paraview.simple import OpenDataFile
 from paraview.servermanager import Fetch
-reader = OpenDataFile("results/aligned.hdf")
-data = Fetch(reader)
-arrays = data.GetPointData()
-out = {"points": data.GetNumberOfPoints(), "cells": data.GetNumberOfCells(), "bounds": data.GetBounds(),
-       "range": {arrays.GetArrayName(i): arrays.GetArray(i).GetRange() for i in range(arrays.GetNumberOfArrays())},
-       "components": {arrays.GetArrayName(i): arrays.GetArray(i).GetNumberOfComponents()
-                      for i in range(arrays.GetNumberOfArrays())}}
-print(json.dumps(out))
-"""
-DENSITY = """
-import json
-from paraview.simple import OpenDataFile
-from paraview.servermanager import Fetch
-data = Fetch(OpenDataFile("results/template.hdf"))
-arrays = data.GetPointData()
-values = arrays.GetArray("density")
-n = values.GetNumberOfTuples()
-print(json.dumps({"size": data.GetDimensions(), "voxel": data.GetSpacing(), "origin": data.GetOrigin(),
-                  "arrays": [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())],
-                  "range": values.GetRange(), "mean": sum(values.GetValue(i) for i in range(n)) / n}))
-"""
-PLY = """
-import json
-from paraview.simple import OpenDataFile
-from paraview.servermanager import Fetch
-data = Fetch(OpenDataFile("results/aligned.ply"))
-print(json.dumps({"points": data.GetNumberOfPoints(), "bounds": data.GetBounds()}))
+
+def points():
+    data = Fetch(OpenDataFile("results/aligned.hdf"))
+    arrays = data.GetPointData()
+    names = range(arrays.GetNumberOfArrays())
+    return {"points": data.GetNumberOfPoints(), "cells": data.GetNumberOfCells(), "bounds": data.GetBounds(),
+            "range": {arrays.GetArrayName(i): arrays.GetArray(i).GetRange() for i in names},
+            "components": {arrays.GetArrayName(i): arrays.GetArray(i).GetNumberOfComponents() for i in names}}
+
+def density():
+    data = Fetch(OpenDataFile("results/template.hdf"))
+    arrays = data.GetPointData()
+    values = arrays.GetArray("density")
+    n = values.GetNumberOfTuples()
+    return {"size": data.GetDimensions(), "voxel": data.GetSpacing(), "origin": data.GetOrigin(),
+            "arrays": [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())],
+            "range": values.GetRange(), "mean": sum(values.GetValue(i) for i in range(n)) / n}
+
+def ply():
+    data = Fetch(OpenDataFile("results/aligned.ply"))
+    return {"points": data.GetNumberOfPoints(), "bounds": data.GetBounds()}
+
+print(json.dumps({"points": points(), "density": density(), "ply": ply()}))
 """
 
 
 @program("PVPYTHON", "ParaView (pvpython)")
 class ParaView(ProgramCase):
+    loaded = None
+
+    def setUp(self):
+        super().setUp()
+        if ParaView.loaded is None:
+            ParaView.loaded = self.python("PVPYTHON", PARAVIEW)
+
     def bounds(self):
         return [f(self.column(f"{axis} [nm]")) for axis in "xyz" for f in (min, max)]
 
     def test_points_have_counts_bounds_and_every_column(self):
-        loaded = self.python("PVPYTHON", POINTS)
+        loaded = self.loaded["points"]
         self.assertEqual((loaded["points"], loaded["cells"]), (len(self.aligned), len(self.aligned)))
         self.assertAllClose(loaded["bounds"], self.bounds(), 1e-4)  # the decimals of the CSV
         self.assertEqual(loaded["components"]["covariance_xx_xy_xz_yy_yz_zz_nm2"], 6)
@@ -96,7 +106,7 @@ class ParaView(ProgramCase):
         self.assertEqual(loaded["range"]["particle"], [0, 5])
 
     def test_density_has_size_spacing_and_mass(self):
-        loaded = self.python("PVPYTHON", DENSITY)
+        loaded = self.loaded["density"]
         self.assertEqual(loaded["arrays"], ["density"])
         self.assertEqual(loaded["range"][0], 0)
         voxel = loaded["voxel"][0]
@@ -107,7 +117,7 @@ class ParaView(ProgramCase):
         self.assertGreater(mass, 0.9 * len(self.aligned))
 
     def test_ply_has_the_points(self):
-        loaded = self.python("PVPYTHON", PLY)
+        loaded = self.loaded["ply"]
         self.assertEqual(loaded["points"], len(self.aligned))
         self.assertAllClose(loaded["bounds"], self.bounds(), 1e-4)
 
@@ -354,7 +364,7 @@ print(json.dumps({{"names": r.name, "accepted": r.accepted.tolist(), "n": len(r.
 @program("PICASSO_PYTHON", "NumPy, h5py and Matplotlib (with Picasso)")
 class ResultsModule(ProgramCase):
     def test_arrays_are_the_result(self):
-        self.ok("run", "run.yaml", "--overwrite", "--set", "output.resolution=halves", "--set", "registration.starts=[imaged]")
+        self.ok("run", "run.yaml", "--overwrite", "--set", "output.resolution=halves")
         scripts = pathlib.Path(__file__).resolve().parents[2] / "scripts"
         read = self.python("PICASSO_PYTHON", MODULE.format(scripts=str(scripts)))
         with (self.results / "poses.csv").open() as table:

@@ -6,13 +6,13 @@ import os
 import random
 import shutil
 
-from harness import PolarCase
+from harness import QUICK, PolarCase
 
 SITES = [(0, 0, 0), (60, 5, -10), (25, 50, 5), (-40, 30, 20), (-55, -20, -15), (-5, -60, 10), (45, -35, 25),
          (10, 20, 60), (-15, 15, -50)]
 NAMES = ["x [nm]", "y [nm]", "z [nm]", "uncertainty_x [nm]", "uncertainty_y [nm]", "uncertainty_z [nm]", "particle",
          "frame", "intensity [photon]"]
-FAST = "registration: {starts: random}\noutput: {formats: [hdf5, csv, picasso, thunderstorm]}\n"
+FAST = QUICK.replace("[imaged]", "random") + "output: {formats: [hdf5, csv, picasso, thunderstorm]}\n"
 
 
 def exact(value_nm):

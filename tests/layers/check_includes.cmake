@@ -18,6 +18,8 @@ set(layers smlm core flames model latent fusion registration simulation results 
 # Library header -> the place (a pattern) that alone may include it.
 set(homes
   "tbb/=src/core/parallel"
+  "openssl/=src/core/sha256"
+  "Random123/=src/core/rng"
   "nanoflann=src/flames/"
   "ceres/=src/fusion/"
   "yaml-cpp/=src/pipeline/config/parse"

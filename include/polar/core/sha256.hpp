@@ -1,26 +1,30 @@
-// SHA-256 (FIPS 180-4): names weights, and tells a whole checkpoint from a damaged one.
+// SHA-256 (FIPS 180-4) by libcrypto: names weights, and tells a whole checkpoint from a damaged one.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <string>
-#include <vector>
+
+struct evp_md_ctx_st;  // of libcrypto, which is used in src/core/sha256.cpp only
 
 namespace polar {
 
 /// Of bytes that come in parts.
 class Sha256 {
  public:
+  Sha256();
   void add(const void* data, std::size_t bytes);
-  /// 64 lower-case hexadecimal digits of all that was added.
+  /// 64 lower-case hexadecimal digits of all that was added; more may be added afterwards.
   std::string digits() const;
 
  private:
-  std::array<std::uint32_t, 8> state_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                                         0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  std::vector<unsigned char> rest_;  // less than a block
-  std::uint64_t bytes_ = 0;
+  struct Free {
+    void operator()(evp_md_ctx_st* context) const;
+  };
+  using Context = std::unique_ptr<evp_md_ctx_st, Free>;
+  static Context new_context();
+
+  Context context_;
 };
 
 /// 64 lower-case hexadecimal digits.

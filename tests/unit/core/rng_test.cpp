@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "polar/core/sha256.hpp"
+
 namespace polar {
 namespace {
 
@@ -15,6 +17,23 @@ TEST(Philox, knownAnswers) {
   EXPECT_EQ(zero, (std::array<std::uint32_t, 4>{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
   const auto ones = philox4x32({~0u, ~0u, ~0u, ~0u}, {~0u, ~0u});
   EXPECT_EQ(ones, (std::array<std::uint32_t, 4>{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  const auto pi = philox4x32({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0});
+  EXPECT_EQ(pi, (std::array<std::uint32_t, 4>{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+// What every seed that anyone wrote down hangs on: how key and counter are filled, and in which order the
+// words of a block are used.
+TEST(KeyedRandom, theStreamOfAKeyIsFixedForGood) {
+  KeyedRandom random(0x123456789abcdef, 7, 3);
+  Sha256 hash;
+  for (int i = 0; i < 4096; ++i) {
+    const std::uint32_t word = random.bits();
+    for (int shift = 0; shift < 32; shift += 8) {
+      const auto byte = static_cast<unsigned char>(word >> shift);
+      hash.add(&byte, 1);
+    }
+  }
+  EXPECT_EQ(hash.digits(), "22b46c9caaa61a627de13af313fabbf44d42112b235b72a1d87708dd7286e029");
 }
 
 TEST(KeyedRandom, theSameKeyGivesTheSameStreamAndAnotherKeyAnother) {

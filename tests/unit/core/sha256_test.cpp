@@ -15,6 +15,14 @@ TEST(Sha256, OfTheStandardsExamples) {  // FIPS 180-4, appendix B
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
+TEST(Sha256, GoesOnAfterItsDigitsWereAskedFor) {
+  Sha256 hash;
+  hash.add("a", 1);
+  EXPECT_EQ(hash.digits(), sha256("a", 1));
+  hash.add("bc", 2);
+  EXPECT_EQ(hash.digits(), sha256("abc", 3));
+}
+
 TEST(Sha256, DoesNotDependOnHowBytesArrive) {
   std::string bytes;
   for (int i = 0; i < 500; ++i) bytes += static_cast<char>(i * 7);

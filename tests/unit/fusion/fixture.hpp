@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "polar/core/covariance3.hpp"
 #include "polar/core/pose.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
@@ -45,7 +46,7 @@ inline View draw_view(const Mixture& m, const Pose& template_from_view, int n, f
     Eigen::Vector3d p = view_from_template * Eigen::Vector3d(m.centre.col(k).cast<double>());
     p += Eigen::Vector3d(double(lateral) * x, double(lateral) * y, planar ? 0 : double(axial) * z);
     view.points.col(j) = p.cast<float>();
-    view.covariance.push_back({lateral * lateral, 0, 0, lateral * lateral, 0, axial * axial});
+    view.covariance.push_back(axial_covariance(lateral * lateral, axial * axial));
   }
   return view;
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "polar/core/covariance3.hpp"
 #include "polar/core/pose.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
@@ -90,7 +91,7 @@ inline View view_of(const Eigen::Matrix3Xf& points, float lateral, float axial) 
   View view;
   view.points = points;
   for (Eigen::Index j = 0; j < points.cols(); ++j)
-    view.covariance.push_back({lateral * lateral, 0, 0, lateral * lateral, 0, axial * axial});
+    view.covariance.push_back(axial_covariance(lateral * lateral, axial * axial));
   return view;
 }
 

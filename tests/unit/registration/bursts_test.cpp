@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "polar/core/covariance3.hpp"
 #include "registration/data/problem.hpp"
 #include "scene.hpp"
 
@@ -15,7 +16,7 @@ View points(const std::vector<Eigen::Vector3f>& at, float sigma) {
   View view;
   view.points.resize(3, static_cast<Eigen::Index>(at.size()));
   for (std::size_t j = 0; j < at.size(); ++j) view.points.col(static_cast<Eigen::Index>(j)) = at[j];
-  view.covariance.assign(at.size(), {sigma * sigma, 0, 0, sigma * sigma, 0, sigma * sigma});
+  view.covariance.assign(at.size(), isotropic_covariance(sigma * sigma));
   return view;
 }
 

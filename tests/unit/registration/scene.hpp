@@ -1,6 +1,7 @@
 // Views of a few sites with known poses: labels that are there or not, several localisations of each.
 #pragma once
 
+#include "polar/core/covariance3.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
 #include "polar/core/symmetry_group.hpp"
@@ -47,7 +48,7 @@ struct Scene {
           for (int a = 0; a < (planar ? 2 : 3); ++a) x[a] += kSceneSigma * random.normal();
           view.points.conservativeResize(3, view.points.cols() + 1);
           view.points.col(view.points.cols() - 1) = x.cast<float>();
-          view.covariance.push_back({s2, 0, 0, s2, 0, s2});
+          view.covariance.push_back(isotropic_covariance(s2));
         }
       }
       views.view.push_back(std::move(view));
