@@ -61,7 +61,7 @@ TEST(AxialHarmonics, nameTheOrderWhateverTheTurnsAboutTheAxis) {
   for (const int order : {5, 8}) {
     const Scene scene(orbit_structure("C" + std::to_string(order), 2, 22), 60, 0.5, 5, 6);
     const Problems p = make_problems(scene.views, {}, 1);
-    const auto found = axial_harmonics(p.plain, {}, about_axis(scene.pose, 3), p.plain.all, 12);
+    const auto found = axial_harmonics(p.plain, {}, about_axis(scene.pose, 3), p.plain.all);
     EXPECT_EQ(found.front().order, order);
     EXPECT_GT(found.front().significance, 5);
     for (const AxialHarmonic& h : found) {
