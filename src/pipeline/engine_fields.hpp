@@ -111,6 +111,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("least_posterior_share", o.verdict.least_posterior_share);
     s.field("most_rotation_std_deg", o.verdict.most_rotation_std_deg);
     s.field("most_outliers", o.verdict.most_outliers);
+    s.field("held_out_share", o.verdict.held_out_share);
     s.field("draws", o.verdict.draws);
     s.field("doubtful_standard_errors", o.verdict.doubtful_standard_errors);
     s.field("cloud_standard_errors", o.verdict.cloud_standard_errors);

@@ -270,11 +270,13 @@ class Run {
   Refiner::AgainstCloud against_cloud(const SearchGrid& grid, const Problem& problem, const Fit& fit) const {
     const VerdictOptions& o = options_.engine.verdict;
     Problem other = problem;
+    EvidenceOptions evidence = options_.engine.evidence;
+    evidence.held_out_share = o.held_out_share;
     const Refiner refiner(other, grid, options_.engine);
     std::vector<Evidence> structure, cloud;
     Refiner::AgainstCloud mean;
     for (int draw = 1; draw <= o.draws; ++draw) {
-      hold_out(options_.engine.evidence, static_cast<std::uint64_t>(draw), other);
+      hold_out(evidence, static_cast<std::uint64_t>(draw), other);
       Refiner::AgainstCloud one = refiner.judge_against_cloud(fit);
       structure.push_back(std::move(one.structure)), cloud.push_back(std::move(one.cloud));
       mean = {mean_over(structure), mean_over(cloud)};

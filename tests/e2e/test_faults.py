@@ -11,7 +11,7 @@ import unittest
 
 from harness import HEADER, POLAR, QUICK, SMALL, PolarCase
 
-TINY = "simulation: {particles: 3, blinks_mean: 2, cramer_rao: false}"
+TINY = "simulation: {particles: 3, blinks_mean: 4, labelling_efficiency: 1, cramer_rao: false}"
 
 
 class Memory(PolarCase):

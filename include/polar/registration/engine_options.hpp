@@ -88,6 +88,7 @@ struct VerdictOptions {
   double least_posterior_share = 0.9;   // of a view's pose posterior within its stated spread; chosen
   double most_rotation_std_deg = 30;    // of a pose that says anything; chosen
   double most_outliers = 0.8;           // share of a view's localisations outside the template; chosen
+  double held_out_share = 0.3;          // of a view's localisations that judge; measured: pores in the plane
   int draws = 4;                        // of what judges, each with its own search; chosen
   double doubtful_standard_errors = 3;  // by which it must explain more at all, or there is none; chosen
   double cloud_standard_errors = 5;     // by which a structure must explain more than a cloud; chosen
