@@ -46,7 +46,7 @@ class Memory(PolarCase):
                 made = self.ends_cleanly(*formats, env={"LD_PRELOAD": os.environ["FAULTY_MEMORY"],
                                                        "FAULT": fault, "NTH": str(nth)})
                 nth = nth * 3 + 1
-            self.assertGreater(nth, 20000, fault)  # about as many as such a run asks for
+            self.assertGreater(nth, 8000, fault)  # about as many as such a run asks for
 
     def test_any_limit_on_the_address_space(self):
         megabytes, made = 60, False  # the program and its libraries are loaded in less

@@ -427,7 +427,7 @@ class Recall(PolarCase):
 
     def test_planar_rings(self):
         data = self.simulate("structure: {kind: nuclear_pore}\n"
-                             "simulation: {particles: 30, planar: true, orientation: in_plane, blinks_mean: 6}")
+                             "simulation: {particles: 80, planar: true, orientation: in_plane, blinks_mean: 6}")
         self.ok("run", self.run_config())
         self.assertGreaterEqual(self.recall("results", data / "poses.csv", 10)[0], 0.9)
 

@@ -90,7 +90,7 @@ struct VerdictOptions {
   double most_outliers = 0.8;           // share of a view's localisations outside the template; chosen
   double held_out_share = 0.3;          // of a view's localisations that judge; measured: pores in the plane
   int draws = 4;                        // of what judges, each with its own search; chosen
-  double doubtful_standard_errors = 3;  // by which it must explain more at all, or there is none; chosen
+  double doubtful_standard_errors = 1;  // by which it must explain more at all, or there is none; chosen
   double cloud_standard_errors = 5;     // by which a structure must explain more than a cloud; chosen
   double enough_standard_errors = 6;    // beyond which no more draws are made; chosen
   double most_gain = 1;  // nat a localisation over a cloud, either way, that a view counts for; chosen
