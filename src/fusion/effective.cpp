@@ -7,6 +7,7 @@
 
 #include "localisations.hpp"
 #include "polar/core/constants.hpp"
+#include "polar/core/covariance3.hpp"
 
 namespace polar {
 
@@ -14,19 +15,13 @@ namespace {
 constexpr float kCutOff = 4.0f;              // standard deviations; as in the kernel
 constexpr float kNearlyIsotropic = 1.02f;    // ratio of standard deviations below which no axis is told apart
 constexpr float kSmallestVariance = 1e-10f;  // (1e-5 of the particle radius)^2: "exact" localisations
-
-Eigen::Matrix3f matrix(const Symmetric3& c) {
-  Eigen::Matrix3f m;
-  m << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
-  return m;
-}
 }  // namespace
 
 Eigen::Vector3f uncertainty_axis(const View& view, bool planar) {
   if (planar || view.covariance.empty()) return Eigen::Vector3f::UnitZ();
   Eigen::Matrix3f mean = Eigen::Matrix3f::Zero();
   for (const Symmetric3& c : view.covariance)
-    mean += matrix(c) / std::max(c[0] + c[3] + c[5], kSmallestVariance);
+    mean += matrix3f(c) / std::max(c[0] + c[3] + c[5], kSmallestVariance);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(mean);
   const Eigen::Vector3f& v = eigen.eigenvalues();
   if (v[2] < kNearlyIsotropic * kNearlyIsotropic * v[0]) return Eigen::Vector3f::UnitZ();
@@ -35,7 +30,7 @@ Eigen::Vector3f uncertainty_axis(const View& view, bool planar) {
 }
 
 AxialSigma axial_sigma(const Symmetric3& covariance, const Eigen::Vector3f& axis) {
-  const Eigen::Matrix3f c = matrix(covariance);
+  const Eigen::Matrix3f c = matrix3f(covariance);
   const float along = axis.dot(c * axis);
   return {std::sqrt(std::max(0.0f, 0.5f * (c.trace() - along))), std::sqrt(std::max(0.0f, along))};
 }
@@ -52,7 +47,7 @@ Symmetric3 effective_covariance(const Symmetric3& stated, const Eigen::Vector3f&
   }
   const Eigen::Matrix3f along = axis * axis.transpose();
   const Eigen::Matrix3f factor = al * Eigen::Matrix3f::Identity() + (aa - al) * along;
-  const Eigen::Matrix3f c = factor * matrix(stated) * factor +
+  const Eigen::Matrix3f c = factor * matrix3f(stated) * factor +
                             (bl + kSmallestVariance) * Eigen::Matrix3f::Identity() + (ba - bl) * along;
   return {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
 }
@@ -88,7 +83,7 @@ KernelLocalisations kernel_localisations(const View& view, const Eigen::Vector3f
            kCutOff * std::sqrt(half + spread)};
       continue;
     }
-    const Eigen::Matrix3f m = matrix(c);
+    const Eigen::Matrix3f m = matrix3f(c);
     const Eigen::Matrix3f p = m.inverse();
     // Bounds of the extreme eigenvalues are enough for the cut-off, and cheaper than the eigenvalues.
     const float largest = m.cwiseAbs().rowwise().sum().maxCoeff();

@@ -9,43 +9,16 @@ namespace polar {
 
 namespace {
 
-void climb(const DirectionVolumes& volumes, const SearchView& view, const Eigen::Matrix3f& rotation,
-           float step, Eigen::Vector3f& translation, float& best) {
-  constexpr int kMostSteps = 6;
-  const int direction = volumes.direction_of(view, rotation);
-  std::vector<float> there;
-  for (int half = 0; half < 2; ++half, step *= 0.5f) {
-    const std::vector<Eigen::Vector3f> shifts = axis_shifts(step, false);
-    for (int s = 0; s < kMostSteps; ++s) {
-      const Eigen::Vector3f here = translation;
-      std::vector<Eigen::Vector3f> around;
-      for (std::size_t a = 1; a < shifts.size(); ++a)
-        around.push_back(here + shifts[a]);  // the first is none
-      there.resize(around.size());
-      volumes.scores(view, direction, rotation, around, there.data());
-      for (std::size_t a = 0; a < around.size(); ++a)
-        if (there[a] > best) best = there[a], translation = around[a];
-      if (translation == here) break;
-    }
-  }
-}
-
-// Uphill over turns about the axes of the template and shifts along them, all of one size.
-void climb_pose(const DirectionVolumes& volumes, const SearchView& view, float turn, float shift, bool planar,
-                LookedUpPose& at) {
-  constexpr int kMostSteps = 4;
-  const std::vector<Eigen::Vector3f> shifts = axis_shifts(shift, planar);
-  std::vector<Eigen::Matrix3f> turns;
-  for (int a = planar ? 2 : 0; a < 3; ++a)
-    for (const float sign : {-1.0f, 1.0f})
-      turns.push_back(Eigen::AngleAxisf(sign * turn, Eigen::Vector3f::Unit(a)).toRotationMatrix());
-  std::vector<Eigen::Vector3f> around(shifts.size() - 1);
-  std::vector<float> there(around.size());
-  for (int s = 0; s < kMostSteps; ++s) {
+// Uphill, at most `steps` of them, over the turns and shifts.
+void climb(const DirectionVolumes& volumes, const SearchView& view, const std::vector<Eigen::Matrix3f>& turns,
+           const std::vector<Eigen::Vector3f>& shifts, int steps, LookedUpPose& at) {
+  std::vector<Eigen::Vector3f> around(shifts.size());
+  std::vector<float> there(shifts.size());
+  for (int s = 0; s < steps; ++s) {
     LookedUpPose best = at;
-    for (std::size_t a = 0; a < around.size(); ++a) around[a] = at.translation + shifts[a + 1];
+    for (std::size_t a = 0; a < shifts.size(); ++a) around[a] = at.translation + shifts[a];
     volumes.scores(view, volumes.direction_of(view, at.rotation), at.rotation, around, there.data());
-    for (std::size_t a = 0; a < around.size(); ++a)
+    for (std::size_t a = 0; a < shifts.size(); ++a)
       if (there[a] > best.score) best = {at.rotation, around[a], there[a]};
     for (const Eigen::Matrix3f& t : turns) {
       const Eigen::Matrix3f r = t * at.rotation;
@@ -57,14 +30,28 @@ void climb_pose(const DirectionVolumes& volumes, const SearchView& view, float t
   }
 }
 
+std::vector<Eigen::Matrix3f> axis_turns(float angle, bool planar) {
+  std::vector<Eigen::Matrix3f> out;
+  for (int a = planar ? 2 : 0; a < 3; ++a)
+    for (const float sign : {-1.0f, 1.0f})
+      out.push_back(Eigen::AngleAxisf(sign * angle, Eigen::Vector3f::Unit(a)).toRotationMatrix());
+  return out;
+}
+
+std::vector<Eigen::Vector3f> moves(float shift, bool planar) {
+  const std::vector<Eigen::Vector3f> all = axis_shifts(shift, planar);
+  return {all.begin() + 1, all.end()};  // the first is none
+}
+
 }  // namespace
 
 LookedUpPose climbed(const DirectionVolumes& volumes, const SearchView& view, const Pose& start, float turn,
                      float shift, bool planar) {
+  constexpr int kMostSteps = 4;
   LookedUpPose at{start.rotation.cast<float>(), start.translation.cast<float>(), 0};
   at.score = volumes.score(view, volumes.direction_of(view, at.rotation), at.rotation, at.translation);
   for (int halves = 0; halves < 3; ++halves, turn *= 0.5f, shift *= 0.5f)
-    climb_pose(volumes, view, turn, shift, planar, at);
+    climb(volumes, view, axis_turns(turn, planar), moves(shift, planar), kMostSteps, at);
   return at;
 }
 
@@ -97,6 +84,7 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
       out.translation[i] = options.translation[static_cast<std::size_t>(best - there.begin())];
     }
   if (options.step <= 0 || options.promising <= 0) return out;
+  constexpr int kMostShifts = 6;  // of one size
   std::vector<int> order(n);
   std::iota(order.begin(), order.end(), 0);
   const std::size_t few = std::min(n, static_cast<std::size_t>(options.promising));
@@ -108,7 +96,10 @@ GridScores score_grid(const DirectionVolumes& volumes, const SearchView& view, c
                     });
   for (std::size_t k = 0; k < few; ++k) {
     const auto i = static_cast<std::size_t>(order[k]);
-    climb(volumes, view, turned[i], options.step, out.translation[i], out.log_likelihood[i]);
+    LookedUpPose at{turned[i], out.translation[i], out.log_likelihood[i]};
+    for (const float step : {options.step, 0.5f * options.step})
+      climb(volumes, view, {}, moves(step, false), kMostShifts, at);
+    out.translation[i] = at.translation, out.log_likelihood[i] = at.score;
   }
   return out;
 }

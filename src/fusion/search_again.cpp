@@ -13,8 +13,6 @@ namespace polar {
 
 namespace {
 
-constexpr double kFirstTurn = 0.3;  // of the grid's spacing: half of it may already leave the basin
-
 // Radians between neighbours of a grid of so many rotations over SO(3) or the circle.
 double grid_spacing(std::size_t rotations, bool planar) {
   const auto n = static_cast<double>(std::max<std::size_t>(1, rotations));
@@ -60,7 +58,7 @@ std::vector<Pose> likely_modes(const DirectionVolumes& volumes, const SearchView
   const double spacing = grid_spacing(grid.rotation.size() * static_cast<std::size_t>(images), planar);
   std::vector<LookedUpPose> found;
   for (const Pose& b : basins(scores, grid, turn, options.basins * std::min(images, 2)))
-    found.push_back(climbed(volumes, view, b, static_cast<float>(kFirstTurn * spacing),
+    found.push_back(climbed(volumes, view, b, static_cast<float>(options.climb_turn * spacing),
                             static_cast<float>(options.climb_shift), planar));
   std::stable_sort(found.begin(), found.end(),
                    [](const LookedUpPose& a, const LookedUpPose& b) { return a.score > b.score; });
@@ -71,8 +69,7 @@ std::vector<Pose> likely_modes(const DirectionVolumes& volumes, const SearchView
     const Pose pose{p.rotation.cast<double>(), p.translation.cast<double>()};
     const bool known = std::any_of(out.begin(), out.end(), [&](const Pose& o) {
       return angle_modulo(options.group, pose.rotation, o.rotation) < options.same_mode_rad &&
-             (options.group.empty() ? (pose.translation - o.translation).norm() < 2 * options.climb_shift
-                                    : true);
+             (!options.group.empty() || (pose.translation - o.translation).norm() < 2 * options.climb_shift);
     });
     if (!known) out.push_back(pose);
   }

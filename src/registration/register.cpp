@@ -125,11 +125,11 @@ class Run {
     coarse.agreement = found.agreement;
     coarse.warnings = std::move(found.warnings);
     coarse.weights_sha256 = model.weights_sha256;
-    SoftState state = std::move(found.winner);
+    const SoftState& state = found.winner;
     coarse.pose = all_posed(coarse, state);
+    timed("all views");
     find_noise(coarse);
     if (progress_.cancelled()) return false;
-    std::vector<SymmetryChoice::Rival> rivals;
     if (options_.symmetry != "none") {
       const std::string asked = names_a_group(options_.symmetry) ? options_.symmetry : "";
       SymmetryChoice choice =
@@ -139,14 +139,11 @@ class Run {
       coarse.continuous = choice.continuous;
       if (options_.symmetry != "detect") {
         coarse.group = choice.group;
-        state = std::move(choice.state);
-        rivals = std::move(choice.rival);
+        coarse.pose = all_posed(coarse, std::move(choice.state));
+        choose_among(std::move(choice.rival), coarse);
       }
       timed("symmetry");
     }
-    coarse.pose = all_posed(coarse, std::move(state));
-    choose_among(std::move(rivals), coarse);
-    timed("all views");
     return !progress_.cancelled();
   }
 
@@ -224,12 +221,8 @@ class Run {
       hold_out(options_.engine.evidence, 0, problem);
       const Fit fit =
           refiner.narrowed(refiner.judged(refiner.begin(pose, coarse.noise, rotations_of(group))));
-      std::vector<Evidence> draw;
-      for (int d = 0; d < options_.engine.symmetry.draws; ++d) {
-        hold_out(options_.engine.evidence, static_cast<std::uint64_t>(d), problem);
-        draw.push_back(refiner.judge(fit));
-      }
-      return mean_over(draw);
+      return over_draws(options_.engine.evidence, options_.engine.symmetry.draws, problem,
+                        [&] { return refiner.judge(fit); });
     };
     Evidence best = judged(coarse.group, coarse.pose);
     for (SymmetryChoice::Rival& r : rivals) {
@@ -266,7 +259,7 @@ class Run {
     return fit;
   }
 
-  // Several draws of what judges: a view says little by a fifth of its bursts.
+  // Several draws of what judges: a view says little by a few of its bursts.
   Refiner::AgainstCloud against_cloud(const SearchGrid& grid, const Problem& problem, const Fit& fit) const {
     const VerdictOptions& o = options_.engine.verdict;
     Problem other = problem;

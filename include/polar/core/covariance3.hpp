@@ -16,6 +16,8 @@ inline Eigen::Matrix3d matrix(const Symmetric3& c) {
   return m;
 }
 
+inline Eigen::Matrix3f matrix3f(const Symmetric3& c) { return matrix(c).cast<float>(); }
+
 /// Rounded to single precision; only the upper half is read.
 inline Symmetric3 symmetric3(const Eigen::Matrix3d& m) {
   const Eigen::Matrix3f s = m.cast<float>();

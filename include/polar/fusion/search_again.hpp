@@ -19,6 +19,7 @@ struct SearchAgainOptions {
   // Log likelihood by which a mode may lie below the best by look-ups, which err, and still be refined.
   double lookup_doubt = 14;
   double climb_shift = 0.03;     // first step of a mode's ascent by look-ups, particle radii
+  double climb_turn = 0.3;       // the same of turns, of the grid's spacing: half of it may leave the basin
   double same_mode_rad = 0.1;    // within which two climbed poses are one
   int evaluations = 8;           // of the refinement of a mode
   int most_localisations = 160;  // of a view that the search looks at: enough to find basins

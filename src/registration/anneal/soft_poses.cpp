@@ -11,6 +11,7 @@
 #include "polar/core/so3.hpp"
 #include "polar/core/symmetry_group.hpp"
 #include "polar/flames/rotation_grid.hpp"
+#include "pose_scorer.hpp"
 
 namespace polar {
 
@@ -58,17 +59,6 @@ float angle_between(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
   return std::acos(std::clamp(c, -1.0f, 1.0f));
 }
 
-// `turn` after the pose, about a point of the template.
-SoftPose turned_about(const SoftPose& pose, const Eigen::Vector3f& centre, const Eigen::Matrix3f& turn) {
-  return {turn * pose.rotation, centre + turn * (pose.translation - centre)};
-}
-
-// Of the quaternion (1, w / 2), normalised: a rotation about w by nearly its length, cheaper than the
-// exponential.
-Eigen::Matrix3f small_turn(const Eigen::Vector3f& w) {
-  return Eigen::Quaternionf(1, 0.5f * w.x(), 0.5f * w.y(), 0.5f * w.z()).normalized().toRotationMatrix();
-}
-
 Eigen::Vector3f normal3(KeyedRandom& random, double scale, bool flat) {
   Eigen::Vector3f v;
   for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(scale * random.normal());
@@ -99,86 +89,6 @@ struct SoftAnnealer::Draw {
   float score = 0;  // log likelihood of the points looked at, prior included
   double weight = 0;
 };
-
-namespace {
-
-// ln of likelihood and prior of one view's poses, scaled so that beta times it is the tempered posterior.
-class Scorer {
- public:
-  Scorer(const LogVolume& volume, const LookupPoints& points, const PosePrior& prior,
-         const Eigen::Vector3f& centre, double shift, double prior_weight)
-      : volume_(volume),
-        points_(points),
-        prior_(prior),
-        centre_(centre),
-        by_shift_(static_cast<float>(-0.5 * prior_weight / (shift * shift))),
-        by_tilt_(prior.tilt_rad > 0
-                     ? static_cast<float>(-0.5 * prior_weight / (prior.tilt_rad * prior.tilt_rad))
-                     : 0.0f) {}
-
-  void operator()(const Eigen::Matrix3f& rotation, const Eigen::Vector3f* translation, std::size_t shifts,
-                  float* score) const {
-    volume_.scores(points_, rotation, translation, shifts, score);
-    const float tilt = by_tilt_ == 0 ? 0 : tilt_of(rotation);
-    for (std::size_t s = 0; s < shifts; ++s)
-      score[s] += by_shift_ * (translation[s] - centre_).squaredNorm() + by_tilt_ * tilt * tilt;
-  }
-  float operator()(const SoftPose& pose) const {
-    float out = 0;
-    (*this)(pose.rotation, &pose.translation, 1, &out);
-    return out;
-  }
-
- private:
-  float tilt_of(const Eigen::Matrix3f& rotation) const {
-    const float z = prior_.flip ? std::abs(rotation(2, 2)) : rotation(2, 2);
-    return std::acos(std::clamp(z, -1.0f, 1.0f));
-  }
-  const LogVolume& volume_;
-  const LookupPoints& points_;
-  const PosePrior& prior_;
-  Eigen::Vector3f centre_;
-  float by_shift_, by_tilt_;
-};
-
-constexpr int kMostClimbs = 3;       // steps of one size
-constexpr float kClimbGain = 1e-3f;  // less is rounding
-
-// Uphill over the neighbours along the axes of rotation and shift; steps halve.
-float climb(const Scorer& scorer, const Eigen::Vector3f& centre, float turn, float shift, int levels,
-            bool planar, SoftPose& pose) {
-  float score = scorer(pose);
-  for (int level = 0; level < levels; ++level, turn *= 0.5f, shift *= 0.5f) {
-    Eigen::Matrix3f turns[6];
-    int ways = 0;
-    for (int a = planar ? 2 : 0; a < 3; ++a)
-      for (const float sign : {-1.0f, 1.0f})
-        turns[ways++] = small_turn(sign * turn * Eigen::Vector3f::Unit(a));
-    for (int step = 0; step < kMostClimbs; ++step) {
-      SoftPose best = pose;
-      float most = score;
-      Eigen::Vector3f there[6];
-      float at[6];
-      int n = 0;
-      for (int a = 0; a < (planar ? 2 : 3); ++a)
-        for (const float sign : {-1.0f, 1.0f})
-          there[n++] = pose.translation + sign * shift * Eigen::Vector3f::Unit(a);
-      scorer(pose.rotation, there, static_cast<std::size_t>(n), at);
-      for (int k = 0; k < n; ++k)
-        if (at[k] > most) most = at[k], best = {pose.rotation, there[k]};
-      for (int w = 0; w < ways; ++w) {
-        const SoftPose turned = turned_about(pose, centre, turns[w]);
-        const float s = scorer(turned);
-        if (s > most) most = s, best = turned;
-      }
-      if (most <= score + kClimbGain) break;
-      pose = best, score = most;
-    }
-  }
-  return score;
-}
-
-}  // namespace
 
 SoftAnnealer::SoftAnnealer(const Problem& problem, std::vector<int> which, const AnnealOptions& options,
                            const PosePrior& prior)

@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include "polar/core/covariance3.hpp"
+
 namespace polar {
 
 namespace {
@@ -11,8 +13,7 @@ constexpr int kMostBursts = 600;
 constexpr int kCentrings = 3;  // of a burst: its first member may lie at its rim
 
 Eigen::Matrix3f matrix_of(const Symmetric3& c, bool planar) {
-  Eigen::Matrix3f m;
-  m << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  Eigen::Matrix3f m = matrix3f(c);
   if (planar) m.row(2).setZero(), m.col(2).setZero(), m(2, 2) = 1;
   return m;
 }

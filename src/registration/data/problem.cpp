@@ -101,6 +101,16 @@ void hold_out(const EvidenceOptions& options, std::uint64_t draw, Problem& probl
   });
 }
 
+Evidence over_draws(const EvidenceOptions& options, int draws, Problem& problem,
+                    const std::function<Evidence()>& judge) {
+  std::vector<Evidence> drawn;
+  for (int d = 0; d < draws; ++d) {
+    hold_out(options, static_cast<std::uint64_t>(d), problem);
+    drawn.push_back(judge());
+  }
+  return mean_over(drawn);
+}
+
 std::vector<int> evenly(const std::vector<int>& views, std::size_t most) {
   const std::size_t n = std::min(views.size(), most);
   std::vector<int> few(n);

@@ -48,13 +48,10 @@ class Trials {
         annealer_(problem, evenly(problem.all, static_cast<std::size_t>(o_.views)), options_.anneal,
                   prior_of(options)),
         coarse_(coarse),
-        similarity_(coarse.density, o_.similarity_blur) {
+        similarity_(coarse.density, o_.similarity_blur),
+        drawn_(problem) {
     // Poses of all views that take part, under the template of those that competed.
     annealer_.continue_under(stage(1), 1990, coarse_);
-    for (int draw = 0; draw < o_.draws; ++draw) {
-      drawn_.push_back(problem);
-      if (draw > 0) hold_out(options_.evidence, static_cast<std::uint64_t>(draw), drawn_.back());
-    }
   }
 
   /// Groups that the coarse template hints at, C1 first.
@@ -130,9 +127,9 @@ class Trials {
   Trial annealed(const std::string& group, double similarity, SoftState state, std::uint64_t key) {
     state.group = rotations_of(group);
     annealer_.anneal(stage(o_.sweeps), key, state);
-    std::vector<Evidence> draw;
-    for (const Problem& drawn : drawn_) draw.push_back(annealer_.judge(state, key, drawn));
-    return {group, similarity, std::move(state), mean_over(draw)};
+    Evidence evidence =
+        over_draws(options_.evidence, o_.draws, drawn_, [&] { return annealer_.judge(state, key, drawn_); });
+    return {group, similarity, std::move(state), std::move(evidence)};
   }
 
   const Problem& problem_;
@@ -141,7 +138,7 @@ class Trials {
   SoftAnnealer annealer_;
   SoftState coarse_;
   SelfSimilarity similarity_;
-  std::vector<Problem> drawn_;  // the problem, other bursts held out in each
+  Problem drawn_;  // the problem, other bursts held out
 };
 
 std::size_t best_of(const std::vector<Trial>& trials) {
