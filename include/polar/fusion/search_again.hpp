@@ -26,7 +26,7 @@ struct SearchAgainOptions {
   // Basins whose log likelihoods differ by less over so few localisations are told apart by more of them.
   double doubt = 8;
   int most_judging = 1000;
-  int judging_evaluations = 4;
+  int judging_evaluations = 16;
   int sigma_classes = 3;
   double escape_rad = 0.2617993877991494;  // T_R = 15 degrees
   double escape_gain = 2;  // log likelihood that a move must gain to count: less is a symmetric twin or a tie
