@@ -1,20 +1,34 @@
 #include "signals.hpp"
 
 #include <signal.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdint>
 #include <initializer_list>
 
 namespace polar::cli {
 
 namespace {
+constexpr std::int64_t kSameSignal_ns = 1'000'000'000;  // within it, another one is an echo of the first
 std::atomic<int> first{0};
-static_assert(std::atomic<int>::is_always_lock_free, "a handler may only touch lock-free atomics");
+std::atomic<std::int64_t> first_at_ns{0};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free,
+              "a handler may only touch lock-free atomics");
+
+std::int64_t now_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
 
 extern "C" void on_signal(int number) {
   int none = 0;
-  if (!first.compare_exchange_strong(none, number)) ::_exit(128 + number);
+  if (first.compare_exchange_strong(none, number))
+    first_at_ns = now_ns();
+  else if (first_at_ns != 0 && now_ns() - first_at_ns > kSameSignal_ns)
+    ::_exit(128 + number);
 }
 }  // namespace
 

@@ -1,5 +1,6 @@
 // SIGINT, SIGTERM and SIGUSR1 (sent by batch systems before their time limit) ask for a clean end; the
-// second one ends at once. Both exit with 128 + the signal's number.
+// second one ends at once, unless it comes within a second: batch systems and shells signal every process of
+// a job, and those pass it on. Both exit with 128 + the signal's number.
 #pragma once
 
 namespace polar::cli {

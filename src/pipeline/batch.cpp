@@ -12,6 +12,7 @@
 #include "batch_tables.hpp"
 #include "child_process.hpp"
 #include "config/nearest.hpp"
+#include "dataset_end.hpp"
 #include "json_text.hpp"
 #include "polar/core/parallel.hpp"
 #include "polar/report/batch_page.hpp"
@@ -26,6 +27,7 @@ using pipeline::DatasetRow;
 
 constexpr int kRefresh_ms = 500;
 constexpr int kStopped = 128;  // of a child that was asked to stop
+constexpr const char* kGoesOn = "out of its time: the same command goes on from there";
 
 struct Running {
   std::size_t dataset;
@@ -36,7 +38,7 @@ class Batch {
  public:
   Batch(const BatchConfig& config, const BatchFlags& flags, Progress& progress, const Engine& engine)
       : config_(config), flags_(flags), progress_(progress), engine_(engine) {
-    require_known_names();
+    require_known_names(config, flags);
     for (const DatasetConfig& d : config.datasets)
       rows_.push_back({d.name, d.condition, "waiting", {}, 0, {}});
   }
@@ -59,19 +61,7 @@ class Batch {
   }
 
  private:
-  void require_known_names() const {
-    std::vector<std::string> names;
-    for (const DatasetConfig& d : config_.datasets) names.push_back(d.name);
-    for (const std::string& name : flags_.only)
-      if (std::find(names.begin(), names.end(), name) == names.end())
-        throw smlm::Error(smlm::Fault::usage, "--only " + name, "no such data set",
-                          "did you mean '" + pipeline::nearest_word(name, names) + "'?");
-  }
-
-  bool wanted(const std::string& name) const {
-    return flags_.only.empty() ||
-           std::find(flags_.only.begin(), flags_.only.end(), name) != flags_.only.end();
-  }
+  bool wanted(const std::string& name) const { return is_wanted(flags_, name); }
 
   std::string file(const std::string& name) const { return config_.directory + "/" + name; }
 
@@ -90,33 +80,51 @@ class Batch {
   }
 
   void find_what_is_there() {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const DatasetConfig& d = config_.datasets[i];
-      bool complete = false;
-      if (d.fault.empty()) {
-        try {
-          complete = is_complete(d.run);
-        } catch (const smlm::Error& e) {
-          fail(i, e.exit_code(), e.what());
-          continue;
-        }
-      } else {
-        fail(i, d.fault_code, d.fault);
-        continue;
-      }
-      if (complete) {
-        rows_[i].state = "kept";
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (flags_.part != BatchPart::data_sets || wanted(rows_[i].name)) look_at(i);
+  }
+
+  void look_at(std::size_t i) {
+    const DatasetConfig& d = config_.datasets[i];
+    if (!d.fault.empty()) return fail(i, d.fault_code, d.fault);
+    const bool run_by_another = flags_.part == BatchPart::tables && wanted(d.name);
+    try {
+      if (is_complete(d.run)) {
+        rows_[i].state = run_by_another ? "done" : "kept";
         load_summary(i);
-      } else if (wanted(d.name)) {
-        waiting_.push_back(i);
+        return;
       }
+    } catch (const smlm::Error& e) {
+      return fail(i, e.exit_code(), e.what());
     }
+    if (run_by_another)
+      take_over(i);
+    else if (wanted(d.name))
+      waiting_.push_back(i);
+  }
+
+  // From the process that ran it.
+  void take_over(std::size_t i) {
+    const auto end = pipeline::read_dataset_end(file(pipeline::kBatchTasks), rows_[i].name);
+    if (!end) return fail(i, 1, "it left no word of its end: it was killed, or never begun");
+    if (end->stopped)
+      rows_[i].state = "stopped";
+    else
+      fail(i, end->exit_code, end->reason);
+  }
+
+  void leave_word(std::size_t i) const {
+    const DatasetRow& row = rows_[i];
+    if (flags_.part == BatchPart::data_sets)
+      pipeline::write_dataset_end(file(pipeline::kBatchTasks), row.name,
+                                  {row.state == "stopped", row.exit_code, row.reason});
   }
 
   void fail(std::size_t i, int code, const std::string& reason) {
     rows_[i].state = "failed";
     rows_[i].exit_code = code;
     rows_[i].reason = reason;
+    leave_word(i);
     if (wanted(rows_[i].name)) progress_.note(rows_[i].name + ": failed: " + reason);
   }
 
@@ -129,9 +137,12 @@ class Batch {
       const ThreadLimit threads(std::max(1, all / flags_.jobs));
       RunFlags flags;
       flags.command = flags_.command;
-      (flags_.overwrite ? flags.overwrite : flags.resume) = true;
+      flags.resume = true;
+      flags.overwrite = flags_.overwrite;
       return polar::run(run_config, flags, progress, engine_).cancelled ? kStopped : 0;
     };
+    if (flags_.part == BatchPart::data_sets)
+      pipeline::remove_dataset_end(file(pipeline::kBatchTasks), rows_[i].name);
     rows_[i].state = "running";
     progress_.note(rows_[i].name + ": begins");
     running_.push_back({i, std::make_unique<ChildProcess>(progress_, work)});
@@ -160,6 +171,7 @@ class Batch {
     ++ended_;
     if (end.reported && end.code == kStopped) {
       row.state = "stopped";
+      leave_word(r.dataset);
     } else if (end.reported && end.code == 0) {
       row.state = "done";
       load_summary(r.dataset);
@@ -178,6 +190,7 @@ class Batch {
   }
 
   void write_tables() const {
+    if (flags_.part == BatchPart::data_sets) return;
     smlm::write_file_atomically(file(pipeline::kBatchSummary), pipeline::batch_summary_csv(rows_));
     smlm::write_file_atomically(file(pipeline::kBatchConditions),
                                 pipeline::batch_conditions_csv(rows_, config_.bootstrap));
@@ -187,6 +200,7 @@ class Batch {
 
   // In a process of its own, too: drawing starts threads, and this process must have none when it forks.
   void write_page() {
+    if (flags_.part == BatchPart::data_sets) return;
     const auto work = [this](Progress&) {
       const ThreadLimit threads(flags_.threads > 0 ? flags_.threads : thread_limit());
       write_batch_report(config_.directory, file(kReportFile), report_name(config_.directory));
@@ -207,15 +221,17 @@ class Batch {
       o.some_failed = true;
       o.summary.push_back(std::string("failed       ") + kReportFile + ": " + page_fault_);
     }
-    o.cancelled = progress_.cancelled() && (!waiting_.empty() || stopping_);
-    std::size_t done = 0, kept = 0;
+    std::size_t done = 0, kept = 0, stopped = 0;
     for (const DatasetRow& row : rows_) {
       done += row.state == "done" ? 1 : 0;
       kept += row.state == "kept" ? 1 : 0;
-      if (row.state != "failed" || !wanted(row.name)) continue;
-      o.some_failed = true;
-      o.summary.push_back("failed       " + row.name + ": " + row.reason);
+      stopped += row.state == "stopped" ? 1 : 0;
+      if (!wanted(row.name)) continue;
+      if (row.state == "failed") o.summary.push_back("failed       " + row.name + ": " + row.reason);
+      if (row.state == "stopped") o.summary.push_back("stopped      " + row.name + ": " + kGoesOn);
+      o.some_failed = o.some_failed || row.state == "failed" || row.state == "stopped";
     }
+    o.cancelled = progress_.cancelled() && (!waiting_.empty() || stopped > 0);
     o.summary.insert(o.summary.begin(), "data sets    " + std::to_string(done) + " done, " +
                                             std::to_string(kept) + " kept, of " +
                                             std::to_string(rows_.size()));
@@ -235,6 +251,19 @@ class Batch {
   std::string page_fault_;  // why the page could not be written
 };
 }  // namespace
+
+bool is_wanted(const BatchFlags& flags, const std::string& name) {
+  return flags.only.empty() || std::find(flags.only.begin(), flags.only.end(), name) != flags.only.end();
+}
+
+void require_known_names(const BatchConfig& config, const BatchFlags& flags) {
+  std::vector<std::string> names;
+  for (const DatasetConfig& d : config.datasets) names.push_back(d.name);
+  for (const std::string& name : flags.only)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw smlm::Error(smlm::Fault::usage, "--only " + name, "no such data set",
+                        "did you mean '" + pipeline::nearest_word(name, names) + "'?");
+}
 
 BatchOutcome run_batch(const BatchConfig& config, const BatchFlags& flags, Progress& progress,
                        const Engine& engine) {

@@ -99,6 +99,17 @@ void refuse_other_result(const pipeline::OutputDirectory& directory) {
                     "give --overwrite to replace it, or choose another output.directory");
 }
 
+// Whether an earlier run is gone on with. To replace what is there, one of another computation is dropped.
+bool continues(pipeline::CheckpointStore& checkpoint, const RunFlags& flags, Progress& progress) {
+  try {
+    if (flags.resume) return checkpoint.resume(progress);
+  } catch (const smlm::Error&) {
+    if (!flags.overwrite) throw;
+  }
+  checkpoint.remove();
+  return false;
+}
+
 smlm::ParticleSet read_particles(const RunConfig& config, Progress& progress) {
   smlm::ParticleSet set = smlm::group_particles(smlm::read_tables(config.files, config.read));
   for (const std::string& warning : set.table.warnings) progress.note("warning: " + warning);
@@ -435,6 +446,8 @@ Engine default_engine() {
 }
 
 bool is_complete(const RunConfig& config) {
+  std::error_code unseen;
+  if (!std::filesystem::exists(config.output.directory + "/" + kSummary, unseen)) return false;
   return is_complete_of(config.output.directory,
                         pipeline::input_hash(input_files(config), computation_text(config)).both);
 }
@@ -444,14 +457,11 @@ RunOutcome run(const RunConfig& config, const RunFlags& flags, Progress& progres
   const pipeline::OutputDirectory directory(config.output.directory, flags);
   const pipeline::InputHash hash = pipeline::input_hash(input_files(config), computation_text(config));
   pipeline::CheckpointStore checkpoint(directory, {program_version(), hash.files, hash.configuration});
-  if (!flags.resume) {
-    checkpoint.remove();
-  } else if (is_complete_of(config.output.directory, hash.both)) {
+  if (flags.resume && is_complete_of(config.output.directory, hash.both)) {
     checkpoint.remove();
     return {false, false, {"results      " + config.output.directory + " (complete already)"}};
-  } else if (!checkpoint.resume(progress)) {
-    refuse_other_result(directory);
   }
+  if (!continues(checkpoint, flags, progress) && !flags.overwrite) refuse_other_result(directory);
   Results r = compute(config, hash.both, progress, checkpoint, engine);
   r.provenance.command = flags.command;
   r.provenance.machine = pipeline::machine_text();

@@ -24,21 +24,26 @@ output: {directory: batch}
 """
 
 
+def write_batch(case):
+    """Data in the folder of a test: `case.config`, and `case.broken`, a table that should hold `case.table`."""
+    # As few particles as still hold a structure: what is tested is the batch.
+    simulation = case.write("simulation.yaml", "simulation: {particles: 12, orientation: in_plane, tilt_std_deg: 5,"
+                            " blinks: poisson, blinks_mean: 6, sigma_xy_nm: 3, cramer_rao: false}\n")
+    for labelled in (50, 70, 90):
+        for cell in range(2):
+            case.ok("simulate", simulation, "--output", f"data/labelled_{labelled}/cell_{cell}",
+                    "--set", f"simulation.seed={labelled + cell}",
+                    "--set", f"simulation.labelling_efficiency={labelled / 100}")
+    case.broken = case.folder / "data/labelled_70/cell_1/localisations.csv"
+    case.table = case.broken.read_text()
+    case.broken.write_text("x,y\n1,2\n3\n")
+    case.config = case.write("batch.yaml", BATCH)
+
+
 class Batch(PolarCase):
     def setUp(self):
         super().setUp()
-        # As few particles as still hold a structure: what is tested is the batch.
-        simulation = self.write("simulation.yaml", "simulation: {particles: 12, orientation: in_plane, tilt_std_deg: 5,"
-                                " blinks: poisson, blinks_mean: 6, sigma_xy_nm: 3, cramer_rao: false}\n")
-        for labelled in (50, 70, 90):
-            for cell in range(2):
-                self.ok("simulate", simulation, "--output", f"data/labelled_{labelled}/cell_{cell}",
-                        "--set", f"simulation.seed={labelled + cell}",
-                        "--set", f"simulation.labelling_efficiency={labelled / 100}")
-        self.broken = self.folder / "data/labelled_70/cell_1/localisations.csv"
-        self.table = self.broken.read_text()
-        self.broken.write_text("x,y\n1,2\n3\n")
-        self.config = self.write("batch.yaml", BATCH)
+        write_batch(self)
 
     def rows(self, name="summary.csv"):
         with open(self.folder / "batch" / name, newline="") as table:
@@ -96,6 +101,11 @@ class Batch(PolarCase):
         self.assertIn("stopped", {row["state"] for row in self.rows()} | {"stopped"})
         self.fails(2, "--only cell_9: no such data set: did you mean", "batch", self.config, "--only", "cell_9")
         self.fails(2, "unknown key 'registration.sede'", "batch", self.config, "--set", "registration.sede=1")
+        self.fails(2, "--partition requires --slurm", "batch", self.config, "--partition", "short")
+        self.fails(2, "excludes", "batch", self.config, "--slurm", "--gather")
+        self.fails(6, "sbatch: cannot be started", "batch", self.config, "--slurm", env={"PATH": "/nowhere"})
+        script = self.ok("batch", self.config, "--slurm", "--print", "--set", "output.voxel_nm=2", env={"PATH": "/nowhere"})
+        self.assertIn(f"batch {self.config} --output {self.folder}/batch --set=output.voxel_nm=2)", script)
         self.ok("batch", self.config, "--only", "labelled_90_cell_0", "--json-log")
         with open(self.folder / "batch/batch.json") as state:
             datasets = {d["name"]: d for d in json.load(state)["datasets"]}

@@ -277,6 +277,7 @@ class Signals(PolarCase):
             time.sleep(0.05)
         time.sleep(1)  # inside the registration
         process.send_signal(number)
+        process.send_signal(number)  # a batch system signals all of a job, and its script passes it on
         self.assertEqual(process.wait(timeout=120), 128 + number)
         process.communicate()
         left = {path.name for path in (self.folder / "results").iterdir()}

@@ -14,7 +14,8 @@ namespace polar {
 
 struct RunFlags {
   bool overwrite = false;  // replace what an earlier run wrote
-  bool resume = false;     // keep a complete result of the same computation, continue one that was cut short
+  bool resume = false;     // keep a complete result of the same computation, continue one that was cut short;
+                           // with overwrite, too, only that of another computation is replaced
   std::string command{};   // as typed; kept in the record
 };
 

@@ -25,6 +25,15 @@ class Cancelling : public Progress {
   bool cancelled() const override { return true; }
 };
 
+class CancelledOnceBegun : public Progress {
+ public:
+  void note(const std::string&) override { begun_ = true; }
+  bool cancelled() const override { return begun_; }
+
+ private:
+  bool begun_ = false;
+};
+
 class BatchTest : public ::testing::Test {
  protected:
   BatchTest() {
@@ -206,6 +215,46 @@ TEST_F(BatchTest, OnlyTheNamedOnesRun) {
     EXPECT_EQ(e.exit_code(), 2);
     EXPECT_THAT(e.what(), HasSubstr("did you mean 'wild_1'?"));
   }
+}
+
+BatchFlags part(BatchPart of, const std::vector<std::string>& only = {}) {
+  BatchFlags flags;
+  flags.part = of;
+  flags.only = only;
+  return flags;
+}
+
+TEST_F(BatchTest, InPartsItComesToTheSame) {
+  std::ofstream(directory_.path("data/wild/1/localisations.csv")) << "nonsense\n";
+  EXPECT_TRUE(run(kFolders).some_failed);
+  nlohmann::json whole = state();
+  std::filesystem::remove_all(directory_.path("batch"));
+  for (const char* name : {"wild_2", "mutant_1", "wild_1"})
+    EXPECT_EQ(run(kFolders, part(BatchPart::data_sets, {name})).some_failed, name == std::string("wild_1"));
+  EXPECT_FALSE(std::filesystem::exists(directory_.path("batch/summary.csv")));
+  EXPECT_TRUE(run(kFolders, part(BatchPart::tables)).some_failed);
+  nlohmann::json gathered = state();
+  for (nlohmann::json* j : {&whole, &gathered})
+    for (auto& d : (*j)["datasets"]) d.erase("seconds");
+  EXPECT_EQ(gathered, whole);
+  EXPECT_THAT(content("batch/report.html"), HasSubstr("./wild_2/report.html"));
+  // Those that were not named have been there before.
+  EXPECT_FALSE(run(kFolders, part(BatchPart::tables, {"wild_2"})).some_failed);
+  EXPECT_THAT(states(), ::testing::ElementsAre("mutant_1 kept", "wild_1 waiting", "wild_2 done"));
+}
+
+TEST_F(BatchTest, APartThatWasStoppedOrLeftNoWordIsSaid) {
+  CancelledOnceBegun cancelled;
+  const auto before = std::signal(SIGTERM, SIG_IGN);  // which the program hears by a handler of its own
+  EXPECT_TRUE(run_batch(load(kFolders), part(BatchPart::data_sets, {"wild_1"}), cancelled, stay).cancelled);
+  std::signal(SIGTERM, before);
+  const BatchOutcome o = run(kFolders, part(BatchPart::tables));
+  EXPECT_TRUE(o.some_failed);
+  EXPECT_THAT(states(), ::testing::ElementsAre("mutant_1 failed", "wild_1 stopped", "wild_2 failed"));
+  EXPECT_THAT(o.summary[1], HasSubstr("mutant_1: it left no word of its end"));
+  EXPECT_THAT(o.summary[2], HasSubstr("wild_1: out of its time"));
+  run(kFolders, part(BatchPart::data_sets, {"wild_1"}));
+  EXPECT_FALSE(run(kFolders, part(BatchPart::tables, {"wild_1"})).some_failed);
 }
 
 TEST_F(BatchTest, CancelledStartsNothingMore) {

@@ -198,6 +198,30 @@ TEST_F(Run, CancelledRunsWriteNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(out()));
 }
 
+TEST_F(Run, ToReplaceAndGoOnDropsOnlyACheckpointOfAnotherComputation) {
+  const Engine stopped = [](const Views& v, const RegistrationOptions& o, Progress& p, Checkpoint& c) {
+    c.keep("state", "of the first");
+    return stay(v, o, p, c);
+  };
+  std::optional<std::string> found;
+  const Engine goes_on = [&](const Views& v, const RegistrationOptions& o, Progress& p, Checkpoint& c) {
+    found = c.load("state");
+    return stay(v, o, p, c);
+  };
+  const RunFlags both{true, true, {}};
+  ASSERT_EQ(fault({}), 0);  // an earlier result, of another input
+  std::ofstream(directory_.path("data/localisations.csv"), std::ios::app) << "1,1,1,1,1,1,1,1,1,1\n";
+  Cancelling cancelling;
+  ASSERT_TRUE(run(config(), both, cancelling, stopped).resumable);
+  ASSERT_EQ(fault(both, goes_on), 0) << message_;
+  EXPECT_EQ(found, "of the first");
+  ASSERT_TRUE(run(config(), {true, false, {}}, cancelling, stopped).resumable);
+  std::ofstream(directory_.path("data/localisations.csv"), std::ios::app) << "2,1,1,1,1,1,1,1,1,1\n";
+  EXPECT_EQ(fault({false, true, {}}, goes_on), 3);
+  ASSERT_EQ(fault(both, goes_on), 0) << message_;
+  EXPECT_EQ(found, std::nullopt);
+}
+
 TEST_F(Run, NothingRegisteredIsNumericalAndLeavesItsAccount) {
   const Engine none = [](const Views& views, const RegistrationOptions& o, Progress& p, Checkpoint& c) {
     Registration r = stay(views, o, p, c);

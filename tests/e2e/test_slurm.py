@@ -1,0 +1,115 @@
+"""polar batch --slurm on a Slurm of its own: the same tables as without, whatever happens to its tasks."""
+import csv
+import json
+import subprocess
+import time
+import unittest
+
+from harness import POLAR, PolarCase
+from slurm_cluster import Cluster, missing
+from test_batch import write_batch
+
+FOLDERS = 'datasets: {folders: "data/*/*", input: localisations.csv}'
+SLOWER = """datasets:
+  - {folders: "data/*50/*", input: localisations.csv, overrides: {expert: {refine: {rotations: 4608}}}}
+  - {folders: "data/*[79]0/*", input: localisations.csv}"""
+
+
+@unittest.skipIf(missing(), "Slurm is not installed: " + ", ".join(missing()))
+class Slurm(PolarCase):
+    def setUp(self):
+        super().setUp()
+        write_batch(self)
+        # The first two take long enough to be caught between their first checkpoint and their end.
+        self.config.write_text(self.config.read_text().replace(FOLDERS, SLOWER))
+        self.cluster = Cluster(cpus=4)
+        self.addCleanup(self.cluster.stop)
+
+    def submit(self, *options):
+        done = subprocess.run([POLAR, "batch", str(self.config), "--slurm", *options], cwd=self.folder, text=True,
+                              capture_output=True, env=self.cluster.environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        words = done.stdout.split()
+        return words[words.index("job") + 1].rstrip(","), words[words.index("job", words.index("job") + 1) + 1]
+
+    def states(self, job):
+        """Of the job's tasks that are not over, by number; those that wait to begin again are let begin."""
+        states = {}
+        for line in self.cluster.output("squeue", "--noheader", "--array", "--jobs", job, "--format=%K %T %r",
+                                        check=False).splitlines():
+            task, state, reason = line.split(maxsplit=2)
+            states[task] = state
+            if (state, reason) == ("PENDING", "BeginTime"):
+                self.cluster.output("scontrol", "update", f"JobId={job}_{task}", "StartTime=now", check=False)
+        return states
+
+    def disturb(self, job):
+        """Puts one task that has left a checkpoint back into the queue; tells another that its time is nearly over."""
+        names = [f"labelled_{labelled}_cell_{cell}" for labelled in (50, 70, 90) for cell in range(2)]
+        acts = [("scontrol", "requeue"), ("scancel", "--signal=USR1", "--batch")]
+        tried, disturbed = set(), []
+        end = time.monotonic() + 120
+        while acts and time.monotonic() < end:
+            for number, name in enumerate(names, 1):
+                result = self.folder / "batch" / name
+                if number in tried or (result / "summary.json").exists() or not list(result.glob("checkpoint.?")):
+                    continue
+                tried.add(number)
+                self.cluster.try_at_once(*acts[0], f"{job}_{number}")
+                log = self.folder / f"batch/tasks/{job}_{number}.log"
+                self.cluster.wait_for(lambda: "stopped by signal" in log.read_text() or
+                                      (result / "summary.json").exists(), 60, "the end of a task")
+                if "stopped by signal" in log.read_text():  # and not just done
+                    disturbed.append(number)
+                    del acts[0]
+                    break
+            time.sleep(0.02)
+        self.assertEqual(acts, [], self.cluster.words())
+        return disturbed
+
+    def rows(self, path):
+        with open(self.folder / path, newline="") as table:
+            rows = list(csv.DictReader(table))
+        for row in rows:
+            row.pop("seconds", None)
+        return rows
+
+    def test_the_same_tables_as_without(self):
+        done = self.polar("batch", self.config, "--output", "whole", "--jobs", 2)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        tasks, tables = self.submit("--jobs", "3", "--notice", "30")
+        disturbed = self.disturb(tasks)
+        self.cluster.wait_for(lambda: not self.states(tasks) and not self.states(tables), 240, "the end of all jobs",
+                              0.5)
+        logs = self.folder / "batch/tasks"
+        for number in disturbed:
+            self.assertIn("continuing from", (logs / f"{tasks}_{number}.log").read_text())
+        gathered = (logs / f"{tables}.log").read_text()
+        self.assertIn("data sets    5 done, 0 kept, of 6", gathered)
+        self.assertIn("failed       labelled_70_cell_1: ", gathered)
+        for table in ("summary.csv", "conditions.csv"):
+            self.assertEqual(self.rows(f"batch/{table}"), self.rows(f"whole/{table}"), table)
+        for path in (self.folder / "whole").glob("*/*.csv"):
+            self.assertEqual((self.folder / "batch" / path.relative_to(self.folder / "whole")).read_bytes(),
+                             path.read_bytes(), path)
+        self.assertIn("labelled_50_cell_0/report.html", (self.folder / "batch/report.html").read_text())
+        self.mend(tables)
+
+    def mend(self, before):
+        self.broken.write_text(self.table)
+        script = self.ok("batch", self.config, "--slurm", "--print", "--time", "5", "--cpus", "2")
+        self.assertIn("names=(labelled_70_cell_1)\n", script)
+        self.assertIn("--time=5", script)
+        _, tables = self.submit()
+        self.assertGreater(int(tables), int(before))
+        self.cluster.wait_for(lambda: not self.states(tables), 60, "the end of the tables", 0.5)
+        with open(self.folder / "batch/batch.json") as state:
+            states = {d["name"]: d["state"] for d in json.load(state)["datasets"]}
+        self.assertEqual(states.pop("labelled_70_cell_1"), "done")
+        self.assertEqual(set(states.values()), {"kept"})
+        # Nothing is left to submit: the tables are made here.
+        self.assertIn("0 done, 6 kept", self.ok("batch", self.config, "--slurm"))
+
+
+if __name__ == "__main__":
+    unittest.main()
