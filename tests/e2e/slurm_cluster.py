@@ -98,7 +98,7 @@ class Cluster:
     def try_at_once(self, *words):
         """A command that would try for long where a job is just ending."""
         try:
-            subprocess.run(words, env=self.environment, capture_output=True, timeout=1)
+            subprocess.run(words, env=self.environment, capture_output=True, timeout=10)
         except subprocess.TimeoutExpired:
             pass
 

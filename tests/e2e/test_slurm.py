@@ -48,7 +48,7 @@ class Slurm(PolarCase):
         names = [f"labelled_{labelled}_cell_{cell}" for labelled in (50, 70, 90) for cell in range(2)]
         acts = [("scontrol", "requeue"), ("scancel", "--signal=USR1", "--batch")]
         tried, disturbed = set(), []
-        end = time.monotonic() + 120
+        end = time.monotonic() + 240
         while acts and time.monotonic() < end:
             for number, name in enumerate(names, 1):
                 result = self.folder / "batch" / name
@@ -58,7 +58,7 @@ class Slurm(PolarCase):
                 self.cluster.try_at_once(*acts[0], f"{job}_{number}")
                 log = self.folder / f"batch/tasks/{job}_{number}.log"
                 self.cluster.wait_for(lambda: "stopped by signal" in log.read_text() or
-                                      (result / "summary.json").exists(), 60, "the end of a task")
+                                      (result / "summary.json").exists(), 240, "the end of a task")
                 if "stopped by signal" in log.read_text():  # and not just done
                     disturbed.append(number)
                     del acts[0]
@@ -102,7 +102,7 @@ class Slurm(PolarCase):
         self.assertIn("--time=5", script)
         _, tables = self.submit()
         self.assertGreater(int(tables), int(before))
-        self.cluster.wait_for(lambda: not self.states(tables), 60, "the end of the tables", 0.5)
+        self.cluster.wait_for(lambda: not self.states(tables), 240, "the end of the tables", 0.5)
         with open(self.folder / "batch/batch.json") as state:
             states = {d["name"]: d["state"] for d in json.load(state)["datasets"]}
         self.assertEqual(states.pop("labelled_70_cell_1"), "done")

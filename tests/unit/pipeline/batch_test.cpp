@@ -171,7 +171,7 @@ TEST_F(BatchTest, OneThatFailsStopsNoOther) {
   std::ofstream(directory_.path("data/wild/1/localisations.csv")) << "nonsense\n";
   std::filesystem::remove(directory_.path("data/mutant/1/localisations.csv"));
   const Engine crashes = [this](const Views& v, const RegistrationOptions& o, Progress& p, Checkpoint& c) {
-    if (v.view.size() == 3) std::raise(SIGSEGV);
+    if (v.view.size() == 3) std::raise(SIGABRT);
     return stay(v, o, p, c);
   };
   SimulateConfig three;
@@ -187,7 +187,7 @@ TEST_F(BatchTest, OneThatFailsStopsNoOther) {
   EXPECT_EQ(datasets[0]["exit_code"], 3);
   EXPECT_THAT(datasets[0]["reason"], HasSubstr("no such file"));
   EXPECT_EQ(datasets[1]["exit_code"], 3);
-  EXPECT_EQ(datasets[3]["exit_code"], 128 + SIGSEGV);
+  EXPECT_EQ(datasets[3]["exit_code"], 128 + SIGABRT);
   EXPECT_THAT(datasets[3]["reason"], HasSubstr("it crashed"));
 }
 
