@@ -31,8 +31,8 @@ SearchGrid search_grid(int rotations, bool planar, const std::vector<Eigen::Matr
              : std::max(kFewestNeighbours, static_cast<int>(std::lround(kNeighbourShare * rotations)));
   const int k = std::min(usual, static_cast<int>(q.size()) - 1);
   SearchGrid grid;
-  grid.graph =
-      static_cast<int>(q.size()) >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory()) : neighbour_graph(q, k);
+  grid.graph = static_cast<int>(q.size()) >= kWorthCaching ? cached_neighbour_graph(q, k, cache_directory())
+                                                           : neighbour_graph(q, k);
   for (const Eigen::Quaternionf& r : q) grid.rotation.push_back(r.toRotationMatrix());
   return grid;
 }

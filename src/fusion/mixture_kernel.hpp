@@ -46,7 +46,7 @@ struct VoxelGaussian {
   int phases, lead, stride;
 };
 
-constexpr int kMostRows = 64;     // voxels along y of a volume, at most
+constexpr int kMostRows = 64;  // voxels along y of a volume, at most
 
 struct MixtureKernel {
   // density[j] of each localisation.

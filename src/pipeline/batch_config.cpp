@@ -113,7 +113,7 @@ Node run_tree(const Tree& t, const Entry& e, const std::vector<std::string>& fil
 }
 
 DatasetConfig dataset(const Tree& t, const Entry& e, std::vector<std::string> files,
-                     const std::vector<std::string>& overrides, const std::string& path) {
+                      const std::vector<std::string>& overrides, const std::string& path) {
   DatasetConfig d;
   d.name = e.name;
   d.condition = e.condition;

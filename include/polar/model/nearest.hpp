@@ -1,4 +1,5 @@
-// Nearest neighbours between two clouds by comparing all pairs, which beats a tree up to some thousand points.
+// Nearest neighbours between two clouds by comparing all pairs, which beats a tree up to some thousand
+// points.
 #pragma once
 
 #include <Eigen/Core>

@@ -68,7 +68,7 @@ struct SymmetryOptions {
   double similarity_blur = 0.08;  // of the density whose turns are compared; measured
   double hint = 0.5;  // self-similarity from which a group is worth trying (1 the same, 0 any); chosen
   double polyhedral_hint = 0.15;  // the same of T, O and I, whose few sites a coarse template blurs; chosen
-  double axial_hint = 0.4;  // the same of any turn about an axis, from which harmonics tell; measured
+  double axial_hint = 0.4;        // the same of any turn about an axis, from which harmonics tell; measured
   int highest_order = 12;         // of an axis tried; chosen
   int orders = 3;                 // of an axis, most significant first, that are tried; measured
   double burst_distance = 1.5;    // Mahalanobis, of bursts whose azimuths are compared; measured
@@ -76,7 +76,7 @@ struct SymmetryOptions {
   int views = 200;                // that take part; measured
   int sweeps = 10;                // of a trial; measured
   double first_width = 0.09, first_beta = 0.35, narrowing = 0.6;  // of a trial; measured
-  int draws = 4;  // of what judges a trial; measured: one does not tell 8 from 7
+  int draws = 4;                     // of what judges a trial; measured: one does not tell 8 from 7
   double means_standard_errors = 4;  // that a group may cost as a means, before it is tested; chosen
   double means_loss = 0.25;    // and nat a localisation that it may cost at all; measured: pores .05 to .15
   int relabellings = 2;        // tries to tell the images of a unit apart; chosen

@@ -21,7 +21,7 @@ struct KnownTemplate {
 };
 
 struct RegistrationOptions {
-  std::uint64_t seed = 1;  // every random choice follows from it
+  std::uint64_t seed = 1;                                           // every random choice follows from it
   std::vector<std::string> starts = {"polar", "random", "imaged"};  // hypotheses that compete
   std::string method = "likelihood";  // likelihood | latent: the paper's registration and nothing after it
   std::string search = "fast";        // fast | exhaustive

@@ -19,7 +19,7 @@ struct SymmetryTrial {
 
 /// Lengths are in units of Normalisation::scale_nm.
 struct Symmetry {
-  bool asked = false;  // named in the configuration; else found
+  bool asked = false;   // named in the configuration; else found
   bool in_use = false;  // template and poses have it; else the average without it explains more
   /// As core/symmetry_group.hpp names it; C1: none. Where no turn about an axis can be told from another:
   /// Cinf, Dinf (with two-fold axes across), or SO3, a sphere.

@@ -9,8 +9,8 @@
 namespace polar {
 
 struct StructureFile {
-  std::string path;  // .h5 (`points`: shape x point x 3, attribute `scale`), a table of x, y, z (read as any
-                     // localisation table; without a header three columns in nm) or .ply (text)
+  std::string path;   // .h5 (`points`: shape x point x 3, attribute `scale`), a table of x, y, z (read as any
+                      // localisation table; without a header three columns in nm) or .ply (text)
   std::string label;  // .h5: takes the shape of this `name`, or the index-th with this `label`; empty: of all
   std::uint64_t index = 0;
   double radius_nm =

@@ -240,7 +240,8 @@ TEST(LogVolume, SameBitsOnEveryInstructionSet) {
   const VoxelFrame frame(1.8, 0.075, false);
   KeyedRandom random(1, 2, 3);
   LookupPoints points;
-  for (int i = 0; i < 117; ++i) points.add(Eigen::Vector3d(random.normal(), random.normal(), random.normal()).cast<float>());
+  for (int i = 0; i < 117; ++i)
+    points.add(Eigen::Vector3d(random.normal(), random.normal(), random.normal()).cast<float>());
   points.pad();
   VoxelCounts counts(frame);
   counts.add(points, Eigen::Matrix3f::Identity(), Eigen::Vector3f::Zero(), 48);
@@ -253,7 +254,8 @@ TEST(LogVolume, SameBitsOnEveryInstructionSet) {
     KeyedRandom turns(4, 5, 6);
     std::vector<float> out;
     for (int i = 0; i < 200; ++i)
-      out.push_back(volume.score(points, turns.rotation().cast<float>(), Eigen::Vector3f(0.01f, 0.02f, 0.03f)));
+      out.push_back(
+          volume.score(points, turns.rotation().cast<float>(), Eigen::Vector3f(0.01f, 0.02f, 0.03f)));
     limit_isa(detected_isa());
     return out;
   };

@@ -32,7 +32,8 @@ TEST(ShippedWeights, restoreProceduralStructures) {
     const TrainingCloud cloud = training_cloud(12345, item, {}, {}, {});
     sum += chamfer(model->decode(model->encode(cloud.input).latent), cloud.target).sum() / kClouds;
   }
-  // The card's training loss is 0.118 on procedural and file shapes together; a wrong layer gives 0.4 and more.
+  // The card's training loss is 0.118 on procedural and file shapes together; a wrong layer gives 0.4 and
+  // more.
   EXPECT_LT(sum, 0.17);
   EXPECT_GT(sum, 0.05);
 }

@@ -19,7 +19,8 @@ Eigen::Matrix3Xd tree() {
   for (int k = 0; k < 10; ++k) out.col(k) << 0, 0, -0.9 + 0.12 * k;
   for (int k = 0; k < 10; ++k) {
     const double along = 0.1 + 0.08 * k;
-    out.col(10 + k) << (k % 2 == 0 ? along : -0.6 * along), (k % 3 == 0 ? 0.7 : -0.2) * along, 0.3 + 0.5 * along;
+    out.col(10 + k) << (k % 2 == 0 ? along : -0.6 * along), (k % 3 == 0 ? 0.7 : -0.2) * along,
+        0.3 + 0.5 * along;
   }
   return out;
 }

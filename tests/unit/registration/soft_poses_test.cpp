@@ -83,7 +83,8 @@ TEST(SoftAnnealer, anyNumberOfThreadsGivesTheSameBits) {
   };
   const SoftState one = run(1), three = run(3);
   EXPECT_EQ(one.density.value(), three.density.value());
-  for (std::size_t i = 0; i < one.best.size(); ++i) EXPECT_EQ(one.best[i].rotation, three.best[i].rotation) << i;
+  for (std::size_t i = 0; i < one.best.size(); ++i)
+    EXPECT_EQ(one.best[i].rotation, three.best[i].rotation) << i;
 }
 
 }  // namespace

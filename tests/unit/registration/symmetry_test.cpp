@@ -45,7 +45,8 @@ TEST(BestFrame, findsAxisAndCentreOfTheGroupThatIsThere) {
 
 TEST(BestFrame, ofAGroupThatIsNotThereIsDissimilar) {
   const SelfSimilarity similarity(density_of(orbit_structure("none", 20, 31), {}), 0.05);
-  for (const char* group : {"C2", "C5", "D3", "T"}) EXPECT_LT(best_frame(similarity, group, 0).similarity, 0.5);
+  for (const char* group : {"C2", "C5", "D3", "T"})
+    EXPECT_LT(best_frame(similarity, group, 0).similarity, 0.5);
 }
 
 std::vector<SoftPose> about_axis(const std::vector<Pose>& truth, std::uint64_t seed) {

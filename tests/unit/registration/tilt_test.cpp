@@ -9,8 +9,8 @@
 namespace polar {
 namespace {
 
-// Views tilted by `tilt_deg` about both axes, half of them upside down, posed to `error_deg`, in a template that
-// was turned any way.
+// Views tilted by `tilt_deg` about both axes, half of them upside down, posed to `error_deg`, in a template
+// that was turned any way.
 std::vector<RegisteredView> tilted(double tilt_deg, double error_deg, int count, int wrong) {
   std::vector<RegisteredView> out;
   KeyedRandom random(3, 1, 1);
@@ -21,7 +21,8 @@ std::vector<RegisteredView> tilted(double tilt_deg, double error_deg, int count,
   for (int i = 0; i < count; ++i) {
     RegisteredView v;
     const Eigen::Matrix3d flip = i % 2 == 0 ? Eigen::Matrix3d::Identity() : so3_exp({kPi, 0, 0});
-    v.template_from_view.rotation = frame * two(error_deg) * two(tilt_deg) * flip * so3_exp({0, 0, 6 * random.uniform()});
+    v.template_from_view.rotation =
+        frame * two(error_deg) * two(tilt_deg) * flip * so3_exp({0, 0, 6 * random.uniform()});
     if (i < wrong) v.template_from_view.rotation = random.rotation();
     v.covariance.setZero();
     v.covariance.topLeftCorner<3, 3>() =

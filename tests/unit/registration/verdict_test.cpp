@@ -52,8 +52,8 @@ TEST(Verdict, labelsAnywhereThatBlinkAreNoStructure) {
       const Eigen::Vector3d at = 0.5 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
       const auto blinks = static_cast<int>(-5 * std::log(1 - random.uniform())) + 1;  // geometric, nearly
       for (int b = 0; b < blinks; ++b)
-        points.push_back(
-            (at + 0.1 * Eigen::Vector3d(random.normal(), random.normal(), 2 * random.normal())).cast<float>());
+        points.push_back((at + 0.1 * Eigen::Vector3d(random.normal(), random.normal(), 2 * random.normal()))
+                             .cast<float>());
     }
     View view;
     view.points.resize(3, static_cast<Eigen::Index>(points.size()));
@@ -86,10 +86,12 @@ TEST(Precision, statedIsWhatIsFound) {
       found.push_back(geodesic_angle(a, b));
       const double variance = r.view[i].covariance.topLeftCorner<3, 3>().trace() +
                               r.view[j].covariance.topLeftCorner<3, 3>().trace();
-      stated.push_back(std::sqrt(variance) * 1.538 / std::sqrt(3.0));  // median of the length of three normals
+      stated.push_back(std::sqrt(variance) * 1.538 /
+                       std::sqrt(3.0));  // median of the length of three normals
     }
   std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2), found.end());
-  std::nth_element(stated.begin(), stated.begin() + static_cast<std::ptrdiff_t>(stated.size() / 2), stated.end());
+  std::nth_element(stated.begin(), stated.begin() + static_cast<std::ptrdiff_t>(stated.size() / 2),
+                   stated.end());
   const double ratio = stated[stated.size() / 2] / found[found.size() / 2];
   EXPECT_GT(ratio, 0.8);
   EXPECT_LT(ratio, 1.25);

@@ -97,8 +97,8 @@ TEST_P(Emitters, CorrelateAsTheirShotNoiseSays) {
   ASSERT_EQ(mean.correlation.size(), kEdge / 2);
   // m coefficients of a real density that fills part of the box are so many independent ones.
   const auto independent = [&](std::size_t s) {
-    return std::max(1.0,
-                    pairs * std::pow(kFilled, planar ? 2 : 3) * static_cast<double>(mean.coefficients[s]) / 2);
+    return std::max(
+        1.0, pairs * std::pow(kFilled, planar ? 2 : 3) * static_cast<double>(mean.coefficients[s]) / 2);
   };
   for (std::size_t s = 0; s < mean.correlation.size(); ++s) {
     // Beyond this what is drawn (exp(-2 pi^2 s^2 q^2)) sinks into the rounding of a float.
@@ -138,7 +138,8 @@ TEST(FourierShells, PureNoiseResolvesNothing) {
     const FourierShells shells = fourier_shells(white_noise(2 * pair), white_noise(2 * pair + 1));
     EXPECT_TRUE(std::isnan(shell_resolution(shells).period_nm));
     for (std::size_t s = 5; s < shells.correlation.size(); ++s)
-      EXPECT_LT(std::abs(shells.correlation[s]), 5 / std::sqrt(static_cast<double>(shells.coefficients[s]) / 2))
+      EXPECT_LT(std::abs(shells.correlation[s]),
+                5 / std::sqrt(static_cast<double>(shells.coefficients[s]) / 2))
           << s;
   }
 }

@@ -43,8 +43,8 @@ class ResultsOfPores : public ::testing::Test {
   support::TemporaryDirectory directory_;
 };
 
-// The engine's rotations are products of many; what is written must be one to the last bits, because the inverse
-// of a pose is taken by transposing, twenty micrometres away from the origin of a field of view.
+// The engine's rotations are products of many; what is written must be one to the last bits, because the
+// inverse of a pose is taken by transposing, twenty micrometres away from the origin of a field of view.
 TEST_F(ResultsOfPores, PosesAreRotationsHoweverTheyWereComposed) {
   results_.registration.view[2].template_from_view.rotation *= 1 + 2e-7;
   results_.normalisation.centre_nm[2] = {19000, 12000, 0};
