@@ -95,13 +95,6 @@ class Cluster:
             raise AssertionError(f"{' '.join(words)}: {done.stderr}")
         return done.stdout
 
-    def try_at_once(self, *words):
-        """A command that would try for long where a job is just ending."""
-        try:
-            subprocess.run(words, env=self.environment, capture_output=True, timeout=10)
-        except subprocess.TimeoutExpired:
-            pass
-
     def wait_for(self, condition, seconds, what, interval_s=0.05):
         end = time.monotonic() + seconds
         while not condition():

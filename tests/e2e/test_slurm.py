@@ -11,7 +11,7 @@ from test_batch import write_batch
 
 FOLDERS = 'datasets: {folders: "data/*/*", input: localisations.csv}'
 SLOWER = """datasets:
-  - {folders: "data/*50/*", input: localisations.csv, overrides: {expert: {refine: {rotations: 4608}}}}
+  - {folders: "data/*50/*", input: localisations.csv, overrides: {expert: {refine: {rotations: 9216}}}}
   - {folders: "data/*[79]0/*", input: localisations.csv}"""
 
 
@@ -44,28 +44,20 @@ class Slurm(PolarCase):
         return states
 
     def disturb(self, job):
-        """Puts one task that has left a checkpoint back into the queue; tells another that its time is nearly over."""
-        names = [f"labelled_{labelled}_cell_{cell}" for labelled in (50, 70, 90) for cell in range(2)]
-        acts = [("scontrol", "requeue"), ("scancel", "--signal=USR1", "--batch")]
-        tried, disturbed = set(), []
+        """Once they have left a checkpoint, puts the first task back into the queue and tells the second that its time
+        is nearly over."""
+        acts = {1: ("scontrol", "requeue"), 2: ("scancel", "--signal=USR1", "--batch")}
+        running = []
         end = time.monotonic() + 240
         while acts and time.monotonic() < end:
-            for number, name in enumerate(names, 1):
-                result = self.folder / "batch" / name
-                if number in tried or (result / "summary.json").exists() or not list(result.glob("checkpoint.?")):
-                    continue
-                tried.add(number)
-                self.cluster.try_at_once(*acts[0], f"{job}_{number}")
-                log = self.folder / f"batch/tasks/{job}_{number}.log"
-                self.cluster.wait_for(lambda: "stopped by signal" in log.read_text() or
-                                      (result / "summary.json").exists(), 240, "the end of a task")
-                if "stopped by signal" in log.read_text():  # and not just done
-                    disturbed.append(number)
-                    del acts[0]
-                    break
-            time.sleep(0.02)
-        self.assertEqual(acts, [], self.cluster.words())
-        return disturbed
+            for number in list(acts):
+                if list((self.folder / f"batch/labelled_50_cell_{number - 1}").glob("checkpoint.?")):
+                    running.append(subprocess.Popen([*acts.pop(number), f"{job}_{number}"], stderr=subprocess.DEVNULL,
+                                                    env=self.cluster.environment))
+            time.sleep(0.01)
+        for process in running:
+            process.wait(240)
+        self.assertEqual(acts, {}, self.cluster.words())
 
     def rows(self, path):
         with open(self.folder / path, newline="") as table:
@@ -78,12 +70,14 @@ class Slurm(PolarCase):
         done = self.polar("batch", self.config, "--output", "whole", "--jobs", 2)
         self.assertEqual(done.returncode, 1, done.stderr)
         tasks, tables = self.submit("--jobs", "3", "--notice", "30")
-        disturbed = self.disturb(tasks)
+        self.disturb(tasks)
         self.cluster.wait_for(lambda: not self.states(tasks) and not self.states(tables), 240, "the end of all jobs",
                               0.5)
         logs = self.folder / "batch/tasks"
-        for number in disturbed:
-            self.assertIn("continuing from", (logs / f"{tasks}_{number}.log").read_text())
+        for number, signal in ((1, 15), (2, 10)):
+            log = (logs / f"{tasks}_{number}.log").read_text()
+            self.assertIn(f"stopped by signal {signal}", log)
+            self.assertIn("continuing from", log)
         gathered = (logs / f"{tables}.log").read_text()
         self.assertIn("data sets    5 done, 0 kept, of 6", gathered)
         self.assertIn("failed       labelled_70_cell_1: ", gathered)
