@@ -25,7 +25,7 @@ constexpr int kStartIterations = 30, kIterations = 300, kRefinements = 4;
 constexpr std::size_t kFinalists = 3;
 constexpr std::size_t kMostForFinalists = 5000;  // localisations
 constexpr double kWideTurn_rad = 1;              // prior of a placement that is not known
-constexpr double kAtBound = 1e-3;                // of a range
+constexpr double kAtBound = 1e-4;                // of a range
 constexpr std::uint32_t kSomeStage = 0xf2;
 
 double finest_sigma_nm(const FitData& data) {
@@ -197,7 +197,8 @@ ModelFit fit_from_starts(const GeometricModel& model, const FitData& data, const
   const FitData few = random_part(data, static_cast<std::size_t>(options.most_for_starts), options.seed);
   const std::vector<Eigen::VectorXd> starts = parameter_starts(model, extent_nm);
   const std::vector<Eigen::Matrix3d> turns = orientations(options.starts, data.planar);
-  std::vector<bool> free(model.parameter.size(), true);
+  std::vector<bool> free, held;
+  for (const ModelParameter& p : model.parameter) free.push_back(!p.fixed), held.push_back(p.fixed);
   for (const bool f : free_placement(data.planar, true)) free.push_back(f);
   const Eigen::VectorXd wide = prior(kWideTurn_rad, extent_nm);
   const Eigen::Vector3d centre_nm = data.centre_nm();
@@ -213,7 +214,10 @@ ModelFit fit_from_starts(const GeometricModel& model, const FitData& data, const
     const Eigen::Vector3d middle((weight * own.x).sum(), (weight * own.y).sum(), (weight * own.z).sum());
     o.data_from_model.rotation = turns[i / starts.size()];
     o.data_from_model.translation = centre_nm - o.data_from_model.rotation * middle;
-    const Optimum found = optimise(o, start, kStartIterations);
+    o.free[kWidth] = o.free[kBackground] = false;  // wide first: a narrow model falls for a cluster
+    const Eigen::VectorXd wide_fit = optimise(o, start, kStartIterations).theta;
+    o.free = free;
+    const Optimum found = optimise(o, wide_fit, kStartIterations);
     c.theta = found.theta, c.objective = found.objective;
     absorb(o, c.theta);
     c.data_from_model = o.data_from_model;
@@ -234,7 +238,7 @@ ModelFit fit_from_starts(const GeometricModel& model, const FitData& data, const
                         [](const Candidate& a, const Candidate& b) { return a.objective < b.objective; });
   Objective o{model, data, {}, best.data_from_model, free, wide};
   const Optimum optimum = refine(o, best.theta, true);
-  ModelFit fit = finished(o, optimum, std::vector<bool>(model.parameter.size(), false));
+  ModelFit fit = finished(o, optimum, held);
   derive(model, fit);
   return fit;
 }
@@ -242,7 +246,8 @@ ModelFit fit_from_starts(const GeometricModel& model, const FitData& data, const
 ModelFit fit_near(const GeometricModel& model, const FitData& data, const ModelFit& near,
                   const FitOptions& options) {
   std::vector<bool> free, held;
-  for (const ModelParameter& p : model.parameter) free.push_back(!p.shared), held.push_back(p.shared);
+  for (const ModelParameter& p : model.parameter)
+    held.push_back(p.shared || p.fixed), free.push_back(!held.back());
   for (const bool f : free_placement(data.planar, options.free_pose)) free.push_back(f);
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(near.value.size() + 6);
   theta.head(near.value.size()) = near.value;

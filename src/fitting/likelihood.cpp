@@ -61,6 +61,8 @@ class Localisation {
     return log_density;
   }
 
+  const Eigen::ArrayXd& responsibility() const { return q_; }
+
   void add_gradient(Eigen::ArrayXd& points, double& width, double& background) {
     const Eigen::Matrix3d& p = w_.precision;
     const Eigen::Index k = q_.size();
@@ -174,6 +176,24 @@ GroupScores group_scores(const FitData& data, const Density& density) {
     out.gradient(kBackground, column) += background;
   });
   return out;
+}
+
+Eigen::VectorXd responsibilities(const FitData& data, const Density& density) {
+  constexpr std::size_t kBlock = 512;  // localisations
+  const Eigen::ArrayXd zero = Eigen::ArrayXd::Zero(density.x.size());
+  return ordered_sum(data.size(), kBlock, zero,
+                     [&](std::size_t begin, std::size_t end) {
+                       Eigen::ArrayXd sum = zero;
+                       Localisation localisation(density);
+                       for (std::size_t i = begin; i < end; ++i) {
+                         localisation.log_density(data.x_nm.col(static_cast<Eigen::Index>(i)),
+                                                  data.covariance_nm2[i], data.background_density,
+                                                  data.planar);
+                         sum += localisation.responsibility();
+                       }
+                       return sum;
+                     })
+      .matrix();
 }
 
 Eigen::VectorXd log_densities(const FitData& data, const Density& density) {

@@ -34,6 +34,9 @@ struct GroupScores {
 };
 GroupScores group_scores(const FitData& data, const Density& density);
 
+/// Expected number of localisations at every point.
+Eigen::VectorXd responsibilities(const FitData& data, const Density& density);
+
 /// Log density of every localisation.
 Eigen::VectorXd log_densities(const FitData& data, const Density& density);
 

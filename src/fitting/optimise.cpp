@@ -2,6 +2,7 @@
 
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
+#include <glog/logging.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -13,29 +14,29 @@ namespace {
 constexpr double kFunctionTolerance = 1e-10;  // relative; log densities are sums of thousands
 constexpr double kInside = 1e-6;              // of a range: a start keeps so far from its bounds
 constexpr double kMostLogit = 30;             // beyond, a bound is reached in floating point
+constexpr double kUnit = 0.1;                 // what Ceres sees as 1: of a parameter's size, or radians
+constexpr double kLeastSize = 1e-2;           // of a parameter, of its range
 
-// Between what Ceres moves (unbounded, nm or of order 1) and theta.
+// Between what Ceres moves (unbounded; its first steps are about 1) and theta.
 class Coordinates {
  public:
-  Coordinates(const Objective& o, const Eigen::VectorXd& start)
-      : o_(o), theta_(start), length_nm_(std::max(1.0, o.data.extent_nm())) {
-    for (std::size_t i = 0; i < o.free.size(); ++i)
-      if (o.free[i]) index_.push_back(i);
+  Coordinates(const Objective& o, const Eigen::VectorXd& start) : o_(o), theta_(start) {
+    const double shift_nm = kUnit * std::max(1.0, o.data.extent_nm());
+    for (std::size_t i = 0; i < o.free.size(); ++i) {
+      if (!o.free[i]) continue;
+      index_.push_back(i);
+      unit_.push_back(is_model(i) ? logit_unit(i) : is_turn(i) ? kUnit : shift_nm);
+    }
   }
 
   int size() const { return static_cast<int>(index_.size()); }
 
   std::vector<double> from(const Eigen::VectorXd& theta) const {
     std::vector<double> u;
-    for (const std::size_t i : index_) {
-      const double t = theta[static_cast<Eigen::Index>(i)];
-      if (is_model(i)) {
-        const ModelParameter& p = o_.model.parameter[i];
-        const double s = std::clamp((t - p.low) / (p.high - p.low), kInside, 1 - kInside);
-        u.push_back(std::log(s / (1 - s)));
-      } else {
-        u.push_back(is_turn(i) ? t * length_nm_ : t);
-      }
+    for (std::size_t k = 0; k < index_.size(); ++k) {
+      const double t = theta[static_cast<Eigen::Index>(index_[k])];
+      const double s = is_model(index_[k]) ? inside(index_[k], t) : 0;
+      u.push_back((is_model(index_[k]) ? std::log(s / (1 - s)) : t) / unit_[k]);
     }
     return u;
   }
@@ -43,19 +44,15 @@ class Coordinates {
   // d theta / d u goes to `slope`.
   Eigen::VectorXd to(const double* u, std::vector<double>& slope) const {
     Eigen::VectorXd theta = theta_;
-    slope.resize(index_.size());
+    slope = unit_;
     for (std::size_t k = 0; k < index_.size(); ++k) {
-      const std::size_t i = index_[k];
-      double& t = theta[static_cast<Eigen::Index>(i)];
-      if (is_model(i)) {
-        const ModelParameter& p = o_.model.parameter[i];
-        const double s = 1 / (1 + std::exp(-std::clamp(u[k], -kMostLogit, kMostLogit)));
-        t = p.low + (p.high - p.low) * s;
-        slope[k] = (p.high - p.low) * s * (1 - s);
-      } else {
-        slope[k] = is_turn(i) ? 1 / length_nm_ : 1;
-        t = u[k] * slope[k];
-      }
+      double& t = theta[static_cast<Eigen::Index>(index_[k])];
+      t = u[k] * unit_[k];
+      if (!is_model(index_[k])) continue;
+      const ModelParameter& p = o_.model.parameter[index_[k]];
+      const double s = 1 / (1 + std::exp(-std::clamp(t, -kMostLogit, kMostLogit)));
+      t = p.low + (p.high - p.low) * s;
+      slope[k] *= (p.high - p.low) * s * (1 - s);
     }
     return theta;
   }
@@ -66,10 +63,21 @@ class Coordinates {
   bool is_model(std::size_t i) const { return i < o_.model.parameter.size(); }
   bool is_turn(std::size_t i) const { return i < o_.model.parameter.size() + 3; }
 
+  double inside(std::size_t i, double t) const {
+    const ModelParameter& p = o_.model.parameter[i];
+    return std::clamp((t - p.low) / (p.high - p.low), kInside, 1 - kInside);
+  }
+  // Logits by which the parameter changes by kUnit of its size.
+  double logit_unit(std::size_t i) const {
+    const ModelParameter& p = o_.model.parameter[i];
+    const double t = theta_[static_cast<Eigen::Index>(i)], range = p.high - p.low, s = inside(i, t);
+    return std::min(1.0, kUnit * std::max(std::abs(t), kLeastSize * range) / (range * s * (1 - s)));
+  }
+
   const Objective& o_;
   Eigen::VectorXd theta_;
-  double length_nm_;
   std::vector<std::size_t> index_;
+  std::vector<double> unit_;
 };
 
 class NegativeLogLikelihood : public ceres::FirstOrderFunction {
@@ -99,9 +107,18 @@ class NegativeLogLikelihood : public ceres::FirstOrderFunction {
   const Objective& o_;
   const Coordinates& coordinates_;
 };
+// Ceres warns on stderr of line searches that end well.
+void silence_ceres() {
+  static const bool done = [] {
+    FLAGS_minloglevel = google::GLOG_FATAL;
+    return true;
+  }();
+  (void)done;
+}
 }  // namespace
 
 Optimum optimise(const Objective& objective, const Eigen::VectorXd& start, int most_iterations) {
+  silence_ceres();
   Optimum out{start};
   const Coordinates coordinates(objective, start);
   std::vector<double> u = coordinates.from(start), slope;

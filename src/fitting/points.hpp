@@ -100,7 +100,8 @@ std::vector<WeightedPoint<T>> points_of(const GeometricModel& model, const Count
       WeightedPoint<T>& m = all[k];
       const T x = ct * m.x + st * m.z, z = ct * m.z - st * m.x;
       m = {cu * x - su * m.y + place(0), su * x + cu * m.y + place(1), z + place(2),
-           share / static_cast<double>(all.size() - first)};
+           share * (part.site_weight.size() > 0 ? part.site_weight[static_cast<Eigen::Index>(k - first)]
+                                                : 1 / static_cast<double>(all.size() - first))};
     }
   }
   for (WeightedPoint<T>& m : all) m.weight = m.weight / total;

@@ -15,6 +15,7 @@ struct ModelParameter {
   std::vector<Expression> start;  // values to start from, formulas of `extent` (nm, see FitData)
   double low = 0, high = 0;       // bounds
   bool shared = false;            // a particle takes the superparticle's value
+  bool fixed = false;             // held at its start everywhere
 };
 
 /// Primitives, in their own frame: round ones about z.
@@ -38,6 +39,7 @@ struct Part {
   Expression share{1.0};              // localisations, relative to the other parts
   int units = 0;                      // ring: so many points evenly spaced; 0: all around
   Eigen::Matrix3Xd site_nm;           // sites
+  Eigen::VectorXd site_weight;        // sites: sum 1; empty: all alike
 };
 
 /// A quantity that follows from the parameters, given with its standard error too.

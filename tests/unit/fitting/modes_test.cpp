@@ -1,0 +1,109 @@
+#include "polar/fitting/modes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/geometric_models.hpp"
+
+namespace polar::fitting {
+namespace {
+
+constexpr double kBurstDistance = 3.4;  // the default
+
+struct Pores {
+  Simulation simulation;
+  std::vector<FitData> data;
+  Eigen::Matrix3Xd site_nm;
+};
+
+Pores pores(double radius_std_nm, double height_std_nm, std::uint64_t seed) {
+  SimulationOptions o;
+  o.particles = 60, o.seed = seed, o.blinks_mean = 5, o.cramer_rao = false, o.outlier_fraction = 0.03;
+  o.radius_std_nm = radius_std_nm, o.height_std_nm = height_std_nm;
+  const Structure structure = make_structure({"nuclear_pore"});
+  Pores out{simulate(structure, o), {}, structure.site_nm};
+  out.data = particles_of(testing::aligned_truth(out.simulation), kBurstDistance, 1);
+  return out;
+}
+
+double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  const Eigen::ArrayXd x = a.array() - a.mean(), y = b.array() - b.mean();
+  return (x * y).sum() / std::sqrt(x.square().sum() * y.square().sum());
+}
+
+ModesOptions quick() {
+  ModesOptions o;
+  o.modes = 3;
+  return o;
+}
+
+TEST(Modes, RadiusAndHeightComeOutFirst) {
+  const Pores p = pores(4, 5, 3);
+  const ModesReport report = find_modes(p.data, p.site_nm, quick());
+  const auto n = static_cast<Eigen::Index>(p.data.size());
+  Eigen::VectorXd radius(n), height(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    radius[i] = p.simulation.particle[static_cast<std::size_t>(i)].radius_change_nm;
+    height[i] = p.simulation.particle[static_cast<std::size_t>(i)].height_change_nm;
+  }
+  for (const Mode& m : report.position)
+    std::printf(
+        "variance %.2f control %.2f share %.2f reliability %.2f gain %.4f +- %.4f radial %.2f axial %.2f "
+        "corr %.3f %.3f\n",
+        m.variance, m.control, m.share, m.reliability, m.gain, m.gain_std, m.radial, m.axial,
+        correlation(m.score, radius), correlation(m.score, height));
+  std::printf("width %.2f background %.3f occupancy %.2f\n", report.width_nm, report.background,
+              report.occupancy.mean());
+  const Mode &first = report.position[0], &second = report.position[1];
+  EXPECT_TRUE(first.above_noise());
+  EXPECT_TRUE(second.above_noise());
+  EXPECT_FALSE(report.position[2].above_noise());
+  EXPECT_GT(first.radial, 0.9);
+  EXPECT_GT(second.axial, 0.7);  // along z localisations are two to three times less certain
+  // A chance correlation of 60 particles is 0.13; the limit itself is estimated.
+  EXPECT_GT(std::abs(correlation(first.score, radius)), std::min(0.9, first.reliability - 0.1));
+  EXPECT_GT(std::abs(correlation(second.score, height)), std::min(0.9, second.reliability - 0.1));
+  EXPECT_GT(first.gain, 2 * first.gain_std);
+  EXPECT_GT(first.share + second.share, 0.99);
+  // Radius changes by sd 4 on every site.
+  EXPECT_NEAR(std::sqrt(first.variance), 4, 1);
+}
+
+TEST(Modes, ARigidStructureHasNone) {
+  const Pores p = pores(0, 0, 4);
+  const ModesReport report = find_modes(p.data, p.site_nm, quick());
+  std::printf("width %.2f occupancy %.2f\n", report.width_nm, report.occupancy.mean());
+  for (const Mode& m : report.position) {
+    std::printf("variance %.2f control %.2f gain %.4f +- %.4f\n", m.variance, m.control, m.gain, m.gain_std);
+    EXPECT_FALSE(m.above_noise());
+    EXPECT_LT(m.gain, 2 * m.gain_std);
+  }
+  for (const Mode& m : report.occupancy_mode) EXPECT_FALSE(m.above_noise());
+}
+
+// A crop takes sites of one side together.
+TEST(Modes, CroppedParticlesShareTheirOccupancies) {
+  SimulationOptions o;
+  o.particles = 80, o.seed = 5, o.cramer_rao = false, o.visibility = {0.5, 0.8};
+  const Structure structure = make_structure({"nuclear_pore"});
+  const auto data = particles_of(testing::aligned_truth(simulate(structure, o)), kBurstDistance, 1);
+  ModesOptions options = quick();
+  options.modes = 2;
+  options.draws = 5;
+  const ModesReport report = find_modes(data, structure.site_nm, options);
+  EXPECT_TRUE(report.occupancy_mode[0].above_noise());
+  EXPECT_GT(report.occupancy_mode[0].reliability, 0.7);
+}
+
+TEST(Landmarks, LieWhereLocalisationsAre) {
+  const Pores p = pores(0, 0, 6);
+  const Eigen::Matrix3Xd place = landmarks(superparticle_of(p.data), 16, 1);
+  ASSERT_EQ(place.cols(), 16);
+  for (Eigen::Index k = 0; k < place.cols(); ++k)
+    EXPECT_LT((p.site_nm.colwise() - place.col(k)).colwise().norm().minCoeff(),
+              30);  // a corner's pair and its noise
+}
+
+}  // namespace
+}  // namespace polar::fitting
