@@ -38,7 +38,7 @@ void add_modes(CLI::App& app, Action& action) {
   sub->add_option("--landmarks", o.landmarks, "places that stand for sites which cannot be told apart")
       ->check(CLI::Range(3, 1000));
   sub->add_option("--modes", o.modes.modes, "modes that are looked for");
-  sub->add_option("--draws", o.modes.draws, "simulated rigid sets of the noise control");
+  sub->add_option("--draws", o.modes.draws, "mirrored sets of the noise control");
   sub->add_option("--pose-std-deg", o.modes.pose_std_deg,
                   "errors of poses, generous: such a motion is no mode");
   sub->add_option("--pose-std-nm", o.modes.pose_std_nm, "and of their shifts, nm");

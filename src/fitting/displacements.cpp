@@ -9,6 +9,7 @@ namespace polar::fitting {
 
 namespace {
 constexpr double kLeastLocalisations = 0.5;
+constexpr double kReach2 = 25;      // squared standard deviations: beyond lies a millionth
 constexpr double kFlat_nm2 = 1e-6;  // variance along z of planar data, where nothing moves
 
 // Planar data have no z: as if it were known.
@@ -31,9 +32,13 @@ Sharing share_out(const FitData& data, const Places& places, double background) 
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Matrix3d own = covariance_of(data, i);
     for (Eigen::Index j = 0; j < k; ++j) {
-      const Eigen::LLT<Eigen::Matrix3d> root(own +
-                                             axes * places.spread_nm2[static_cast<std::size_t>(j)] * axes);
+      const Eigen::Matrix3d c = own + axes * places.spread_nm2[static_cast<std::size_t>(j)] * axes;
       const Eigen::Vector3d d = axes * (data.x_nm.col(column) - places.x_nm.col(j));
+      if (d.squaredNorm() > kReach2 * c.trace()) {  // farther still in standard deviations
+        out.responsibility(j, column) = 0;
+        continue;
+      }
+      const Eigen::LLT<Eigen::Matrix3d> root(c);
       out.responsibility(j, column) =
           places.weight[j] * std::exp(norm - root.matrixLLT().diagonal().array().log().sum() -
                                       0.5 * root.matrixL().solve(d).squaredNorm());

@@ -9,12 +9,15 @@
 namespace polar::fitting {
 
 namespace {
-constexpr int kSteps = 40;
+constexpr int kMostSteps = 40;
+constexpr double kStill = 1e-3;  // relative change of the label's variance and of the fields' size in a step
 constexpr double kRidge = 1e-3;  // labels' worth of pull on a field towards 0: sites that nobody shows
 constexpr double kLeastVariance_nm2 = 0.01;
 
-Eigen::MatrixXd loading(const FactorModel& m, Eigen::Index site) {
-  Eigen::MatrixXd b(3, m.field_nm.cols() + 6);
+using Loading = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMostFactors>;
+
+Loading loading(const FactorModel& m, Eigen::Index site) {
+  Loading b(3, m.field_nm.cols() + 6);
   b << m.field_nm.middleRows<3>(3 * site), m.motion.middleRows<3>(3 * site);
   return b;
 }
@@ -54,7 +57,8 @@ void step(FactorModel& m, const std::vector<std::vector<Label>>& labels) {
   for (const std::vector<Label>& own : labels) {
     if (own.empty()) continue;
     const Factors f = factors_of(m, own);
-    Eigen::VectorXd z(modes + 1);  // with 1 for the mean
+    auto z = f.mean;  // with 1 for the mean
+    z.resize(modes + 1);
     z << f.mean.head(modes), 1;
     Eigen::MatrixXd zz = z * z.transpose();
     zz.topLeftCorner(modes, modes) += f.covariance.topLeftCorner(modes, modes);
@@ -63,14 +67,14 @@ void step(FactorModel& m, const std::vector<std::vector<Label>>& labels) {
     for (const Label& label : own) {
       const Eigen::Matrix3d precision = label_precision(m, label);
       const auto r = m.motion.middleRows<3>(3 * label.site);
-      const Eigen::MatrixXd target = precision * (label.displacement_nm * z.transpose() - r * rz);
+      const Loading target = precision * (label.displacement_nm * z.transpose() - r * rz);
       SiteSums& s = sums[static_cast<std::size_t>(label.site)];
       for (Eigen::Index a = 0; a <= modes; ++a) {
         s.right.segment<3>(3 * a) += target.col(a);
         for (Eigen::Index b = 0; b <= modes; ++b) s.left.block<3, 3>(3 * a, 3 * b) += zz(a, b) * precision;
       }
       // The label's own offset, expected.
-      const Eigen::MatrixXd b = loading(m, label.site);
+      const Loading b = loading(m, label.site);
       const Eigen::Vector3d offset =
           m.variance_nm2 * precision * (label.displacement_nm - m.mean_nm.col(label.site) - b * f.mean);
       const Eigen::Matrix3d pull = m.variance_nm2 * precision;
@@ -132,17 +136,20 @@ FactorModel rigid_model(const Eigen::Matrix3Xd& site_nm, int modes, double pose_
 
 Factors factors_of(const FactorModel& m, const std::vector<Label>& labels) {
   const Eigen::Index modes = m.field_nm.cols();
-  Eigen::MatrixXd information = Eigen::MatrixXd::Identity(modes + 6, modes + 6);
-  information.diagonal().tail<6>() = m.motion_precision;
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(modes + 6);
-  for (const Label& label : labels) {
-    const Eigen::MatrixXd b = loading(m, label.site);
-    const Eigen::MatrixXd weighted = b.transpose() * label_precision(m, label);
-    information += weighted * b;
-    sum += weighted * (label.displacement_nm - m.mean_nm.col(label.site));
-  }
   Factors f;
-  f.covariance = information.llt().solve(Eigen::MatrixXd::Identity(modes + 6, modes + 6));
+  auto information = f.covariance;
+  information.setIdentity(modes + 6, modes + 6);
+  information.diagonal().tail<6>() = m.motion_precision;
+  auto sum = f.mean;
+  sum.setZero(modes + 6);
+  for (const Label& label : labels) {
+    const Loading b = loading(m, label.site);
+    const Loading weighted = label_precision(m, label) * b;
+    information.noalias() += weighted.transpose() * b;
+    sum.noalias() += weighted.transpose() * (label.displacement_nm - m.mean_nm.col(label.site));
+  }
+  f.covariance.setIdentity(modes + 6, modes + 6);
+  information.llt().solveInPlace(f.covariance);
   f.mean = f.covariance * sum;
   return f;
 }
@@ -156,7 +163,7 @@ Eigen::Matrix3Xd displacement_of(const FactorModel& m, const Factors& f) {
 std::vector<Eigen::Matrix3d> spread_of(const FactorModel& m, const Factors& f) {
   std::vector<Eigen::Matrix3d> spread;
   for (Eigen::Index k = 0; k < m.mean_nm.cols(); ++k) {
-    const Eigen::MatrixXd b = loading(m, k);
+    const Loading b = loading(m, k);
     spread.push_back(b * f.covariance * b.transpose());
   }
   return spread;
@@ -164,7 +171,12 @@ std::vector<Eigen::Matrix3d> spread_of(const FactorModel& m, const Factors& f) {
 
 void fit_factors(FactorModel& model, const std::vector<std::vector<Label>>& labels) {
   if (model.field_nm.cols() > 0 && model.field_nm.isZero()) start_fields(model, labels);
-  for (int i = 0; i < kSteps; ++i) step(model, labels);
+  const auto size = [&] { return Eigen::Vector2d(model.variance_nm2, model.field_nm.norm()); };
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Eigen::Vector2d before = size();
+    step(model, labels);
+    if (((size() - before).array().abs() <= kStill * before.array()).all()) break;
+  }
   standardise(model, labels);
 }
 

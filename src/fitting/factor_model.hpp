@@ -21,10 +21,13 @@ struct FactorModel {
   double variance_nm2 = 4;           // v
 };
 
+/// Modes that a model may have at most; factors with the rigid motions. Small matrices live on the stack.
+constexpr int kMostModes = 20, kMostFactors = kMostModes + 6;
+
 /// Of one particle given its labels.
 struct Factors {
-  Eigen::VectorXd mean;  // (z, r)
-  Eigen::MatrixXd covariance;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostFactors, 1> mean;  // (z, r)
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostFactors, kMostFactors> covariance;
 };
 
 /// No displacement yet, and room for `modes`; rigid motions about the centre of the sites.

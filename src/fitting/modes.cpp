@@ -14,13 +14,12 @@
 namespace polar::fitting {
 
 namespace {
-constexpr int kRounds = 4;                 // of sharing out and fitting
-constexpr int kSharings = 5;               // of a particle's localisations, see labels_at
+constexpr int kRounds = 3;                 // of sharing out and fitting
+constexpr int kSharings = 3;               // of a particle's localisations, see labels_at
 constexpr double kPriorLocalisations = 1;  // that speak for a site's usual weight
-constexpr int kPilots = 2;                 // rigid sets that say how wide one comes out
 constexpr double kStartVariance_nm2 = 9;
 constexpr double kLeastBackground = 1e-4, kStartBackground = 0.05;
-constexpr std::uint32_t kRigidStage = 0xf5, kHalfStage = 0xf6;
+constexpr std::uint32_t kMirrorStage = 0xf5, kHalfStage = 0xf6;
 
 struct Analysis {
   Structure structure;
@@ -103,49 +102,41 @@ double mean_square(const Eigen::VectorXd& field) {
   return 3 * field.squaredNorm() / static_cast<double>(field.size());
 }
 
-// The same labels, localisations and uncertainties, every label about its mean site.
-std::vector<FitData> rigid_copy(const std::vector<FitData>& particles, const Analysis& rigid,
-                                double variance_nm2, std::uint64_t seed, std::uint64_t draw) {
+// The same localisations, every label with its localisations mirrored at its expected place or not, by
+// chance: as far from what `known` explains as before, and no label knows of another.
+std::vector<FitData> mirrored_copy(const std::vector<FitData>& particles, const Analysis& known,
+                                   std::uint64_t seed, std::uint64_t draw) {
   std::vector<FitData> copies = particles;
-  parallel_for(particles.size(), [&](std::size_t p) {
-    KeyedRandom random(seed, p + (draw << 32), kRigidStage);
-    const auto normal = [&] {
-      Eigen::Vector3d v(random.normal(), random.normal(), random.normal());
-      if (particles[p].planar) v.z() = 0;
-      return v;
-    };
-    FitData& copy = copies[p];
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    KeyedRandom random(seed, p + (draw << 32), kMirrorStage);
     Sharing sharing;
-    labels_at(rigid, particles[p], &sharing);
-    Eigen::Matrix3Xd label(3, rigid.structure.site_nm.cols());
-    for (Eigen::Index k = 0; k < label.cols(); ++k)
-      label.col(k) = rigid.structure.site_nm.col(k) + std::sqrt(variance_nm2) * normal();
+    const Factors f = factors_of(known.model, labels_at(known, particles[p], &sharing));
+    const Eigen::Matrix3Xd place = known.structure.site_nm + displacement_of(known.model, f);
+    std::vector<bool> mirrored;
+    for (Eigen::Index k = 0; k < place.cols(); ++k) mirrored.push_back(random.uniform() < 0.5);
     for (Eigen::Index i = 0; i < sharing.responsibility.cols(); ++i) {
       double u = random.uniform();
       Eigen::Index site = 0;
-      while (site < label.cols() && u >= sharing.responsibility(site, i))
+      while (site < place.cols() && u >= sharing.responsibility(site, i))
         u -= sharing.responsibility(site++, i);
-      if (site == label.cols()) continue;  // background stays where it is
-      const Eigen::Matrix3d root = copy.covariance_nm2[static_cast<std::size_t>(i)].llt().matrixL();
-      copy.x_nm.col(i) = label.col(site) + root * normal();
-      if (copy.planar) copy.x_nm(2, i) = 0;
+      if (site == place.cols() || !mirrored[static_cast<std::size_t>(site)]) continue;  // or background
+      copies[p].x_nm.col(i) = 2 * place.col(site) - particles[p].x_nm.col(i);
+      if (copies[p].planar) copies[p].x_nm(2, i) = 0;
     }
-  });
+  }
   return copies;
 }
 
-// The labels' variance that a rigid set must have for as wide a one to come out as the data's.
-double rigid_variance_nm2(const std::vector<FitData>& particles, const Eigen::Matrix3Xd& site_nm,
-                          const Analysis& rigid, const ModesOptions& o) {
-  const double wanted = rigid.structure.variance_nm2;
-  double found = 0;
-  for (int pilot = 0; pilot < kPilots; ++pilot) {
-    const auto draw = static_cast<std::uint64_t>(o.draws + pilot);
-    found +=
-        analyse(rigid_copy(particles, rigid, wanted, o.seed, draw), site_nm, 0, o).structure.variance_nm2 /
-        kPilots;
-  }
-  return wanted * std::max(1.0, wanted / found);
+// The largest variance that mode number `mode` (from 0) has by chance, where those before it are real.
+double control_of(const std::vector<FitData>& particles, const Eigen::Matrix3Xd& site_nm, int mode,
+                  const ModesOptions& o) {
+  const Analysis known = analyse(particles, site_nm, mode, o);
+  std::vector<double> variance(static_cast<std::size_t>(o.draws));
+  parallel_for(variance.size(), [&](std::size_t draw) {
+    const Analysis null = analyse(mirrored_copy(particles, known, o.seed, draw), site_nm, o.modes, o);
+    variance[draw] = mean_square(null.model.field_nm.col(mode));
+  });
+  return *std::max_element(variance.begin(), variance.end());
 }
 
 // Mean log density of the judging localisations of one particle whose factors the others gave.
@@ -233,7 +224,7 @@ std::vector<std::string> violations(const ModesOptions& o) {
   const auto require = [&](bool holds, const char* sentence) {
     if (!holds) faults.emplace_back(sentence);
   };
-  require(o.modes >= 1 && o.modes <= 20, "modes must be 1 to 20");
+  require(o.modes >= 1 && o.modes <= kMostModes, "modes must be 1 to 20");
   require(o.draws >= 1 && o.draws <= 1000, "draws must be 1 to 1000");
   require(o.pose_std_deg > 0 && o.pose_std_deg <= 180, "pose_std_deg must be above 0, at most 180");
   require(o.pose_std_nm > 0 && o.pose_std_nm <= 1e6, "pose_std_nm must be above 0, at most a million");
@@ -249,25 +240,20 @@ void share_among(std::vector<Mode>& modes) {
 
 ModesReport find_modes(const std::vector<FitData>& particles, const Eigen::Matrix3Xd& site_nm,
                        const ModesOptions& o) {
-  const Analysis rigid = analyse(particles, site_nm, 0, o);
   const Analysis found = analyse(particles, site_nm, o.modes, o);
   ModesReport report;
   report.site_nm = found.structure.site_nm;
   report.width_nm = std::sqrt(found.structure.variance_nm2);
   report.background = found.structure.background;
   report.position = modes_of(found, particles.size());
-  const double variance_nm2 = rigid_variance_nm2(particles, site_nm, rigid, o);
-  std::vector<double> control(static_cast<std::size_t>(o.draws));
-  for (std::size_t draw = 0; draw < control.size(); ++draw) {
-    const Analysis null =
-        analyse(rigid_copy(particles, rigid, variance_nm2, o.seed, draw), site_nm, o.modes, o);
-    control[draw] = mean_square(null.model.field_nm.col(0));
-  }
   const std::vector<Evidence> evidence = evidences(particles, site_nm, o);
   for (std::size_t m = 0; m < report.position.size(); ++m) {
     const Comparison c = compare(evidence[m], evidence[m + 1]);
     report.position[m].gain = c.gain, report.position[m].gain_std = c.standard_error;
-    report.position[m].control = *std::max_element(control.begin(), control.end());
+    // After one that is not above noise, none is: what it was held against stays.
+    report.position[m].control = m == 0 || report.position[m - 1].above_noise()
+                                     ? control_of(particles, site_nm, static_cast<int>(m), o)
+                                     : report.position[m - 1].control;
   }
   share_among(report.position);
   add_occupancy_modes(report, found.labels, o);

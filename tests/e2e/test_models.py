@@ -36,6 +36,23 @@ class Fit(PolarCase):
         self.fails(4, "is not empty", "fit", data / "localisations.csv", "--poses", data / "poses.csv", "--model",
                    "two_rings", "--output", "fit")
 
+    def test_a_result(self):
+        data = self.simulate("simulation: {particles: 12, blinks_mean: 8, sigma_xy_nm: [2, 4], cramer_rao: false}")
+        config = self.run_config(more="registration: {symmetry: D8, starts: [imaged]}\n"
+                                      "output: {formats: [hdf5], preview: false, report: false}\n"
+                                      "expert: {proposals: {most_proposals: 0}, verdict: {draws: 1}}\n")
+        self.ok("run", config, "--set", f"registration.initial_poses={data / 'poses.csv'}")
+        self.ok("fit", "results", "--model", "nuclear_pore")
+        report = json.loads((self.folder / "results/fit_nuclear_pore/fit.json").read_text())
+        radius = report["superparticle"]["parameters"]["radius"]
+        self.assertLess(abs(radius["value"] - 53.5), 4 * radius["std"])
+        self.ok("fit", "results/results.h5", "--model", "ring", "--output", "ring")
+        free = json.loads((self.folder / "ring/fit.json").read_text())["evidence"]["gain_of_free_template"]
+        self.assertGreater(free["gain"], 5 * free["standard_error"])  # one ring is not enough for two
+        self.assertIn("not above noise", self.ok("modes", "results", "--modes", 1, "--draws", 3))
+        self.fails(2, "a result has its own", "fit", "results", "--model", "ring", "--poses", data / "poses.csv")
+        self.fails(2, "a result has been read", "fit", "results", "--model", "ring", "--set", "input.unit=um")
+
     def test_faults(self):
         data = self.simulate("simulation: {particles: 2, cramer_rao: false}")
         table = data / "localisations.csv"

@@ -14,7 +14,7 @@ namespace polar::fitting {
 struct ModesOptions {
   std::uint64_t seed = 1;
   int modes = 4;            // that are looked for
-  int draws = 19;           // of the rigid structure, for the noise control: 1 in 20 finds a mode by chance
+  int draws = 19;           // of sets without a further mode: 1 in 20 finds one by chance
   double pose_std_deg = 5;  // of the poses' errors, generous: such a motion is no mode
   double pose_std_nm = 5;
   double burst_distance = 3.4;  // Mahalanobis: see FitOptions
@@ -27,7 +27,7 @@ std::vector<std::string> violations(const ModesOptions& options);
 struct Mode {
   Eigen::MatrixXd field;   // 3 x K nm (positions) or 1 x K (occupancies) at one standard deviation
   double variance = 0;     // mean square of the field: nm^2, or squared occupancy
-  double control = 0;      // largest variance of a first mode of the rigid structure, of all draws
+  double control = 0;      // the largest that chance made of all draws (see docs/modes.md)
   double share = 0;        // of the variance above control in all modes
   double reliability = 0;  // correlation of scores with true ones that the noise allows
   double gain = 0,

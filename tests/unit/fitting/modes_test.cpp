@@ -19,7 +19,7 @@ struct Pores {
 
 Pores pores(double radius_std_nm, double height_std_nm, std::uint64_t seed) {
   SimulationOptions o;
-  o.particles = 60, o.seed = seed, o.blinks_mean = 5, o.cramer_rao = false, o.outlier_fraction = 0.03;
+  o.particles = 50, o.seed = seed, o.blinks_mean = 5, o.cramer_rao = false, o.outlier_fraction = 0.03;
   o.radius_std_nm = radius_std_nm, o.height_std_nm = height_std_nm;
   const Structure structure = make_structure({"nuclear_pore"});
   Pores out{simulate(structure, o), {}, structure.site_nm};
@@ -34,7 +34,8 @@ double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 
 ModesOptions quick() {
   ModesOptions o;
-  o.modes = 3;
+  o.modes = 2;
+  o.draws = 7;
   return o;
 }
 
@@ -58,13 +59,12 @@ TEST(Modes, RadiusAndHeightComeOutFirst) {
   const Mode &first = report.position[0], &second = report.position[1];
   EXPECT_TRUE(first.above_noise());
   EXPECT_TRUE(second.above_noise());
-  EXPECT_FALSE(report.position[2].above_noise());
   EXPECT_GT(first.radial, 0.9);
   EXPECT_GT(second.axial, 0.7);  // along z localisations are two to three times less certain
   // A chance correlation of 60 particles is 0.13; the limit itself is estimated.
   EXPECT_GT(std::abs(correlation(first.score, radius)), std::min(0.9, first.reliability - 0.1));
   EXPECT_GT(std::abs(correlation(second.score, height)), std::min(0.9, second.reliability - 0.1));
-  EXPECT_GT(first.gain, 2 * first.gain_std);
+  EXPECT_GT(second.gain, 2 * second.gain_std);
   EXPECT_GT(first.share + second.share, 0.99);
   // Radius changes by sd 4 on every site.
   EXPECT_NEAR(std::sqrt(first.variance), 4, 1);
