@@ -110,7 +110,8 @@ std::vector<FitData> mirrored_copy(const std::vector<FitData>& particles, const 
   for (std::size_t p = 0; p < particles.size(); ++p) {
     KeyedRandom random(seed, p + (draw << 32), kMirrorStage);
     Sharing sharing;
-    const Factors f = factors_of(known.model, labels_at(known, particles[p], &sharing));
+    Factors f = factors_of(known.model, labels_at(known, particles[p], &sharing));
+    f.mean.tail<6>().setZero();  // a rigid motion that was found is in part noise, which must stay
     const Eigen::Matrix3Xd place = known.structure.site_nm + displacement_of(known.model, f);
     std::vector<bool> mirrored;
     for (Eigen::Index k = 0; k < place.cols(); ++k) mirrored.push_back(random.uniform() < 0.5);
@@ -147,6 +148,15 @@ double judged(const Analysis& a, const FitData& data, std::uint64_t seed, std::u
   return share_out(halves.judging, expected_places(a, f), a.structure.background).log_density.mean();
 }
 
+// The others count as scatter of the labels.
+Analysis first_modes(Analysis a, Eigen::Index modes) {
+  for (Eigen::Index m = modes; m < a.model.field_nm.cols(); ++m)
+    a.structure.variance_nm2 += mean_square(a.model.field_nm.col(m)) / 3;
+  a.model.variance_nm2 = a.structure.variance_nm2;
+  a.model.field_nm.conservativeResize(Eigen::NoChange, modes);
+  return a;
+}
+
 // One evidence a number of modes, from 0: everything common is fitted to the other half of the particles.
 std::vector<Evidence> evidences(const std::vector<FitData>& particles, const Eigen::Matrix3Xd& site_nm,
                                 const ModesOptions& o) {
@@ -161,8 +171,9 @@ std::vector<Evidence> evidences(const std::vector<FitData>& particles, const Eig
       else
         others.push_back(particles[order[i]]);
     if (others.empty()) continue;
+    const Analysis whole = analyse(others, site_nm, o.modes, o);
     for (std::size_t modes = 0; modes < out.size(); ++modes) {
-      const Analysis a = analyse(others, site_nm, static_cast<int>(modes), o);
+      const Analysis a = first_modes(whole, static_cast<Eigen::Index>(modes));
       parallel_for(own.size(),
                    [&](std::size_t k) { out[modes][own[k]] = judged(a, particles[own[k]], o.seed, own[k]); });
     }
@@ -234,8 +245,8 @@ std::vector<std::string> violations(const ModesOptions& o) {
 
 void share_among(std::vector<Mode>& modes) {
   double above = 0;
-  for (const Mode& m : modes) above += std::max(0.0, m.variance - m.control);
-  for (Mode& m : modes) m.share = above > 0 ? std::max(0.0, m.variance - m.control) / above : 0;
+  for (const Mode& m : modes) above += m.above_noise ? m.variance - m.control : 0;
+  for (Mode& m : modes) m.share = m.above_noise ? (m.variance - m.control) / above : 0;
 }
 
 ModesReport find_modes(const std::vector<FitData>& particles, const Eigen::Matrix3Xd& site_nm,
@@ -248,12 +259,14 @@ ModesReport find_modes(const std::vector<FitData>& particles, const Eigen::Matri
   report.position = modes_of(found, particles.size());
   const std::vector<Evidence> evidence = evidences(particles, site_nm, o);
   for (std::size_t m = 0; m < report.position.size(); ++m) {
+    Mode& mode = report.position[m];
     const Comparison c = compare(evidence[m], evidence[m + 1]);
-    report.position[m].gain = c.gain, report.position[m].gain_std = c.standard_error;
+    mode.gain = c.gain, mode.gain_std = c.standard_error;
     // After one that is not above noise, none is: what it was held against stays.
-    report.position[m].control = m == 0 || report.position[m - 1].above_noise()
-                                     ? control_of(particles, site_nm, static_cast<int>(m), o)
-                                     : report.position[m - 1].control;
+    const bool last_is_real = m == 0 || report.position[m - 1].above_noise;
+    mode.control = last_is_real ? control_of(particles, site_nm, static_cast<int>(m), o)
+                                : report.position[m - 1].control;
+    mode.above_noise = last_is_real && mode.variance > mode.control && mode.gain > 0;
   }
   share_among(report.position);
   add_occupancy_modes(report, found.labels, o);

@@ -62,6 +62,7 @@ void add_occupancy_modes(ModesReport& report, const std::vector<std::vector<Labe
     mode.field = sd * found.vector.col(m).transpose();
     mode.variance = found.variance[m] / static_cast<double>(sites);
     mode.control = control / static_cast<double>(sites);
+    mode.above_noise = mode.variance > mode.control;
     // Of the scores' variance, chance explains as much as it does without a mode.
     const double chance = std::min(1.0, noise[m] / std::max(found.variance[m], 1e-12));
     mode.reliability = std::sqrt(1 - chance);

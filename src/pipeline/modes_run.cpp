@@ -85,7 +85,7 @@ std::vector<std::string> run_modes(const ModesRunOptions& o, Progress& progress)
   const ModesReport report = find_modes(data, places.site_nm, o.modes);
 
   for (std::size_t m = 0; m < report.position.size(); ++m)
-    if (report.position[m].above_noise())
+    if (report.position[m].above_noise)
       write_mode_picture(directory.file("mode_" + std::to_string(m + 1) + ".png"), report, report.position[m],
                          particles.table);
   nlohmann::json json = pipeline::modes_json(report);

@@ -38,7 +38,7 @@ std::string modes_csv(const ModesReport& r) {
   each_mode(r, [&](const Mode& m, bool position, std::size_t number) {
     text += std::string(kind_of(position)) + "," + std::to_string(number) + "," +
             csv_number(std::sqrt(m.variance)) + "," + csv_number(std::sqrt(m.control)) + "," +
-            (m.above_noise() ? "1" : "0") + "," + csv_number(m.share) + "," + csv_number(m.reliability) + ",";
+            (m.above_noise ? "1" : "0") + "," + csv_number(m.share) + "," + csv_number(m.reliability) + ",";
     if (position)
       text += csv_number(m.gain) + "," + csv_number(m.gain_std) + "," + csv_number(m.radial) + "," +
               csv_number(m.axial) + "\n";
@@ -91,7 +91,7 @@ nlohmann::json modes_json(const ModesReport& r) {
                         {"unit", position ? "nm" : "1"},
                         {"rms", std::sqrt(m.variance)},
                         {"control_rms", std::sqrt(m.control)},
-                        {"above_noise", m.above_noise()},
+                        {"above_noise", m.above_noise},
                         {"share", m.share},
                         {"reliability", m.reliability}};
     if (position) {
@@ -115,7 +115,7 @@ std::vector<std::string> modes_lines(const ModesReport& r) {
                       std::sqrt(m.variance), position ? " nm" : "", std::sqrt(m.control));
     char* rest = line + length;
     const std::size_t room = sizeof line - static_cast<std::size_t>(length);
-    if (!m.above_noise())
+    if (!m.above_noise)
       std::snprintf(rest, room, ": not above noise");
     else if (position)
       std::snprintf(

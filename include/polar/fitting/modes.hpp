@@ -35,7 +35,8 @@ struct Mode {
   double radial = 0, axial = 0;  // shares of the field that change the distance from z, and the height alone
   Eigen::VectorXd score, score_std;  // one a particle, in standard deviations; NaN: it shows no site
 
-  bool above_noise() const { return variance > control; }
+  bool above_noise =
+      false;  // larger than control; of positions only where evidence does not speak against it
 };
 
 struct ModesReport {

@@ -57,8 +57,8 @@ TEST(Modes, RadiusAndHeightComeOutFirst) {
   std::printf("width %.2f background %.3f occupancy %.2f\n", report.width_nm, report.background,
               report.occupancy.mean());
   const Mode &first = report.position[0], &second = report.position[1];
-  EXPECT_TRUE(first.above_noise());
-  EXPECT_TRUE(second.above_noise());
+  EXPECT_TRUE(first.above_noise);
+  EXPECT_TRUE(second.above_noise);
   EXPECT_GT(first.radial, 0.9);
   EXPECT_GT(second.axial, 0.7);  // along z localisations are two to three times less certain
   // A chance correlation of 60 particles is 0.13; the limit itself is estimated.
@@ -76,10 +76,10 @@ TEST(Modes, ARigidStructureHasNone) {
   std::printf("width %.2f occupancy %.2f\n", report.width_nm, report.occupancy.mean());
   for (const Mode& m : report.position) {
     std::printf("variance %.2f control %.2f gain %.4f +- %.4f\n", m.variance, m.control, m.gain, m.gain_std);
-    EXPECT_FALSE(m.above_noise());
+    EXPECT_FALSE(m.above_noise);
     EXPECT_LT(m.gain, 2 * m.gain_std);
   }
-  for (const Mode& m : report.occupancy_mode) EXPECT_FALSE(m.above_noise());
+  for (const Mode& m : report.occupancy_mode) EXPECT_FALSE(m.above_noise);
 }
 
 // A crop takes sites of one side together.
@@ -92,7 +92,7 @@ TEST(Modes, CroppedParticlesShareTheirOccupancies) {
   options.modes = 2;
   options.draws = 5;
   const ModesReport report = find_modes(data, structure.site_nm, options);
-  EXPECT_TRUE(report.occupancy_mode[0].above_noise());
+  EXPECT_TRUE(report.occupancy_mode[0].above_noise);
   EXPECT_GT(report.occupancy_mode[0].reliability, 0.7);
 }
 
