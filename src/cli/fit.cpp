@@ -3,9 +3,8 @@
 
 #include "command.hpp"
 #include "command_line.hpp"
-#include "polar/core/parallel.hpp"
+#include "measuring.hpp"
 #include "polar/pipeline/fit_run.hpp"
-#include "reporter.hpp"
 
 namespace polar::cli {
 
@@ -13,13 +12,13 @@ namespace {
 struct Arguments {
   FitRunOptions options;
   std::string pose = "free";
-  int threads = 0;
-  bool quiet = false, json_log = false, no_evidence = false;
+  Manner manner;
+  bool no_evidence = false;
 };
 
 int run(const Arguments& a) {
-  const ThreadLimit threads(a.threads);
-  Reporter reporter(choose_style(a.quiet, a.json_log));
+  const ThreadLimit threads(a.manner.threads);
+  Reporter reporter(a.manner.style());
   FitRunOptions options = a.options;
   options.fit.free_pose = a.pose == "free";
   options.evidence = !a.no_evidence;
@@ -36,13 +35,10 @@ void add_fit(CLI::App& app, Action& action) {
   for (const std::string& name : fit_models()) models += (models.empty() ? "" : ", ") + name;
   CLI::App* sub =
       app.add_subcommand("fit", "Measure a geometric model on a result or on tables, with errors");
-  sub->add_option("input", o.input.inputs, "result directory, results.h5, or localisation tables")
-      ->required();
+  add_input_options(*sub, o.input);
   sub->add_option("--model", o.model, models + ", or a model file")->required();
   sub->add_option("--sites", o.sites, "table of x, y, z: the sites of the model `sites`");
   sub->add_option("--hold", o.hold, "name or name=value: holds a parameter at its start or at the value");
-  sub->add_option("--poses", o.input.poses, "poses.csv of the tables' particles");
-  sub->add_option("--set", o.input.overrides, "input.key=value: how tables are read");
   sub->add_option("--output", o.directory, "directory; default: fit_<model> beside the input");
   sub->add_option("--pose", a->pose, "of a particle that has one: free (under a prior) or fixed")
       ->check(CLI::IsMember({"free", "fixed"}));
@@ -51,14 +47,8 @@ void add_fit(CLI::App& app, Action& action) {
   sub->add_option("--starts", o.fit.starts, "orientations to start from where the placement is not known");
   sub->add_option("--burst-distance", o.fit.burst_distance,
                   "Mahalanobis: nearer localisations may be of one label, and are not independent");
-  sub->add_option("--seed", o.fit.seed, "every random choice follows from it");
   sub->add_flag("--no-evidence", a->no_evidence, "do not hold the model against the free template");
-  sub->add_option("--threads", a->threads,
-                  "0: all that the machine grants; the result is the same for any number")
-      ->check(CLI::Range(0, 4096));
-  sub->add_flag("--quiet", a->quiet, "no progress, no warnings");
-  sub->add_flag("--json-log", a->json_log, "progress and warnings as JSON lines on stderr");
-  sub->add_flag("--overwrite", o.overwrite, "replace what is there");
+  add_manner_options(*sub, a->manner, o.fit.seed, o.overwrite);
   sub->callback([a, &action] { action = [a] { return run(*a); }; });
 }
 
