@@ -83,9 +83,6 @@ TEST(Fit, StandardErrorsCoverTheTruth) {
     radius += std::abs(r) < 1.96, distance += std::abs(h) < 1.96;
     squares += r * r + h * h;
   }
-  RecordProperty("radius", radius), RecordProperty("distance", distance);
-  std::printf("radius %d distance %d of %d, mean square %.2f\n", radius, distance, particles,
-              squares / 2 / particles);
   expect_coverage(radius, particles, 0.95);
   expect_coverage(distance, particles, 0.95);
   EXPECT_GT(squares / (2 * particles), 0.5);  // nor are they far too large

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "polar/core/parallel.hpp"
 #include "support/geometric_models.hpp"
 
 namespace polar::fitting {
@@ -48,14 +49,6 @@ TEST(Modes, RadiusAndHeightComeOutFirst) {
     radius[i] = p.simulation.particle[static_cast<std::size_t>(i)].radius_change_nm;
     height[i] = p.simulation.particle[static_cast<std::size_t>(i)].height_change_nm;
   }
-  for (const Mode& m : report.position)
-    std::printf(
-        "variance %.2f control %.2f share %.2f reliability %.2f gain %.4f +- %.4f radial %.2f axial %.2f "
-        "corr %.3f %.3f\n",
-        m.variance, m.control, m.share, m.reliability, m.gain, m.gain_std, m.radial, m.axial,
-        correlation(m.score, radius), correlation(m.score, height));
-  std::printf("width %.2f background %.3f occupancy %.2f\n", report.width_nm, report.background,
-              report.occupancy.mean());
   const Mode &first = report.position[0], &second = report.position[1];
   EXPECT_TRUE(first.above_noise);
   EXPECT_TRUE(second.above_noise);
@@ -73,9 +66,7 @@ TEST(Modes, RadiusAndHeightComeOutFirst) {
 TEST(Modes, ARigidStructureHasNone) {
   const Pores p = pores(0, 0, 4);
   const ModesReport report = find_modes(p.data, p.site_nm, quick());
-  std::printf("width %.2f occupancy %.2f\n", report.width_nm, report.occupancy.mean());
   for (const Mode& m : report.position) {
-    std::printf("variance %.2f control %.2f gain %.4f +- %.4f\n", m.variance, m.control, m.gain, m.gain_std);
     EXPECT_FALSE(m.above_noise);
     EXPECT_LT(m.gain, 2 * m.gain_std);
   }
@@ -94,6 +85,21 @@ TEST(Modes, CroppedParticlesShareTheirOccupancies) {
   const ModesReport report = find_modes(data, structure.site_nm, options);
   EXPECT_TRUE(report.occupancy_mode[0].above_noise);
   EXPECT_GT(report.occupancy_mode[0].reliability, 0.7);
+}
+
+TEST(Modes, SameBitsForAnyNumberOfThreads) {
+  Pores p = pores(3, 0, 7);
+  p.data.resize(16);
+  ModesOptions o = quick();
+  o.draws = 2;
+  const auto with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return find_modes(p.data, p.site_nm, o);
+  };
+  const ModesReport one = with(1), two = with(2);
+  EXPECT_EQ(one.position[0].field, two.position[0].field);
+  EXPECT_EQ(one.position[0].control, two.position[0].control);
+  EXPECT_EQ(one.position[0].score, two.position[0].score);
 }
 
 TEST(Landmarks, LieWhereLocalisationsAre) {
