@@ -115,7 +115,9 @@ std::vector<std::string> modes_lines(const ModesReport& r) {
                       std::sqrt(m.variance), position ? " nm" : "", std::sqrt(m.control));
     char* rest = line + length;
     const std::size_t room = sizeof line - static_cast<std::size_t>(length);
-    if (!m.above_noise)
+    if (!m.above_noise && position && m.variance > m.control)
+      std::snprintf(rest, room, ": not above noise, evidence %+.4f +- %.4f", m.gain, m.gain_std);
+    else if (!m.above_noise)
       std::snprintf(rest, room, ": not above noise");
     else if (position)
       std::snprintf(
