@@ -7,6 +7,7 @@
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
+#include "smlm/table_reader.hpp"
 #include "symmetry_record.hpp"
 
 namespace polar {
@@ -380,6 +381,12 @@ void write_result_file(const std::string& path, const Results& results,
   if (results.labelled) write_labelling(file, *results.labelled);
   file.close();
   atomic.commit();
+}
+
+bool is_result_file(const std::string& path) {
+  if (!smlm::read_head(path).hdf5) return false;
+  const File file = File::open(path);
+  return file.has_attribute("/", "format") && file.read_string_attribute("/", "format") == kFormat;
 }
 
 ResultRecord read_result_file(const std::string& path) {
