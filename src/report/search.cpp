@@ -70,11 +70,11 @@ void add_rounds(const RunRecord& record, Section& s) {
                        "pose that explains the particle better, in the rounds that searched."});
   Plot score(across, axis_of(held_out, "held-out log likelihood"));
   score.line("c1", round, held_out), score.dots("c1", round, held_out);
-  s.figures.push_back({"rounds-score", "What each round gained",
-                       score.svg("held-out log likelihood of each round"),
-                       "A localisation that was not fitted. The average was drawn with a width of " +
-                           fixed(width.front(), 2) + " nm in the first round and of " +
-                           fixed(width.back(), 2) + " nm in the last."});
+  s.figures.push_back(
+      {"rounds-score", "What each round gained", score.svg("held-out log likelihood of each round"),
+       "Of localisations that were not fitted, nat each. The average was drawn with a width of " +
+           fixed(width.front(), 2) + " nm in the first round and of " + fixed(width.back(), 2) +
+           " nm in the last."});
 }
 
 void add_time(const RunRecord& record, Section& s) {
