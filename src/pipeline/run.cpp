@@ -234,8 +234,8 @@ std::vector<std::string> describe(const Results& r, double tilt_deg, const std::
   if (g.other)
     lines.push_back("other        the average " +
                     (g.other->group == "C1" ? "without symmetry" : "with " + g.other->group) +
-                    format(" explains localisations kept apart by %+.4f", g.other->gain) +
-                    format(" +- %.4f nat", g.other->gain_std));
+                    format(" predicts the labels of other views by %+.4f", g.other->gain) +
+                    format(" +- %.4f nat a label", g.other->gain_std));
   if (tilt_deg > 0) lines.push_back(tilt_line(r, tilt_deg));
   if (r.resolution) lines.push_back(resolution_line(*r.resolution));
   lines.push_back("seconds      " + format("%.1f", seconds));

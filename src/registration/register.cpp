@@ -130,10 +130,11 @@ class Run {
     timed("all views");
     find_noise(coarse);
     if (progress_.cancelled()) return false;
+    const std::string asked = names_a_group(options_.symmetry) ? options_.symmetry : "";
     if (options_.symmetry != "none") {
-      const std::string asked = names_a_group(options_.symmetry) ? options_.symmetry : "";
       SymmetryChoice choice =
-          choose_symmetry(problems_->of(coarse.crowded), options_, state, asked, progress_);
+          choose_symmetry(problems_->of(coarse.crowded), options_, state, asked,
+                          coarse.agreement >= options_.engine.proposals.agreeing_share, progress_);
       if (progress_.cancelled()) return false;
       coarse.symmetry = std::move(choice.report);
       coarse.continuous = choice.continuous;
@@ -160,7 +161,8 @@ class Run {
     if (!restore(checkpoint_, "fine", fit)) {
       fit = refiner.rounds(refiner.begin(std::move(coarse.pose), coarse.noise, group), progress_);
       timed("rounds");
-      fit = regrown(problem, refiner, std::move(fit));
+      if (coarse.agreement < options_.engine.proposals.agreeing_share)
+        fit = regrown(problem, refiner, std::move(fit));
       timed("regrown");
       if (progress_.cancelled()) return cancelled();
       fit = refiner.calibrated(std::move(fit));
@@ -173,7 +175,7 @@ class Run {
       keep(checkpoint_, "fine", fit);
     }
     out_.symmetry = coarse.symmetry;
-    if (!group.empty()) fit = tested(problem, refiner, coarse.group, std::move(fit));
+    if (!group.empty()) fit = tested(problem, coarse.group, std::move(fit));
     timed("symmetry tested");
     const Refiner::AgainstCloud against = against_cloud(grid, problem, fit);
     timed("verdict");
@@ -278,9 +280,8 @@ class Run {
   }
 
   // With the group against without; evidence decides which is the result.
-  Fit tested(const Problem& problem, const Refiner& refiner, const std::string& name, Fit symmetric) {
-    Fit plain = relaxed(problem, refiner, options_.engine, symmetric);
-    const Comparison c = compare(symmetric.evidence, plain.evidence);
+  Fit tested(const Problem& problem, const std::string& name, Fit symmetric) {
+    auto [plain, c] = relaxed(problem, options_.engine, symmetric);
     const bool without =
         c.better_by(options_.engine.evidence.standard_errors) && !names_a_group(options_.symmetry);
     if (out_.symmetry) out_.symmetry->in_use = !without;

@@ -36,6 +36,7 @@ struct AnnealOptions {
   int first_localisations = 64;   // in the first half of the sweeps; measured
   double promising_share = 0.08;  // of the rotations whose shift is improved; measured
   double shift = 0.1;             // standard deviation of the prior of shifts; measured
+  double shift_of_label = 0.5;    // what one label adds to it, over the root of the labels of a view; chosen
   int samples = 16;               // of a pose posterior; measured
   int jitters = 8;                // Metropolis steps of a sample; measured
   int last_sweeps = 3;            // over all views, when those that competed have a template; measured
@@ -69,7 +70,7 @@ struct SymmetryOptions {
   double similarity_blur = 0.08;  // of the density whose turns are compared; measured
   double hint = 0.5;  // self-similarity from which a group is worth trying (1 the same, 0 any); chosen
   double polyhedral_hint = 0.15;  // the same of T, O and I, whose few sites a coarse template blurs; chosen
-  double axial_hint = 0.4;  // the same of any turn about an axis, from which harmonics tell; measured
+  double axial_hint = 0.4;        // the same of any turn about an axis, from which harmonics tell; measured
   int highest_order = 12;         // of an axis tried; chosen
   int orders = 3;                 // of an axis, most significant first, that are tried; measured
   double burst_distance = 1.5;    // Mahalanobis, of bursts whose azimuths are compared; measured
@@ -77,11 +78,12 @@ struct SymmetryOptions {
   int views = 200;                // that take part; measured
   int sweeps = 10;                // of a trial; measured
   double first_width = 0.09, first_beta = 0.35, narrowing = 0.6;  // of a trial; measured
-  int draws = 4;  // of what judges a trial; measured: one does not tell 8 from 7
+  int draws = 4;                     // of what judges a trial; measured: one does not tell 8 from 7
   double means_standard_errors = 4;  // that a group may cost as a means, before it is tested; chosen
-  double means_loss = 0.25;    // and nat a localisation that it may cost at all; measured: pores .05 to .15
-  int relabellings = 2;        // tries to tell the images of a unit apart; chosen
-  int relabelling_sweeps = 8;  // chosen
+  double means_loss = 0.25;      // and nat a localisation that it may cost at all; measured: pores .05 to .15
+  int relabellings = 8;          // tries to tell the images of a unit apart; chosen
+  int relabelling_sweeps = 30;   // of one such try; chosen
+  double relabelling_views = 4;  // as if seen spread evenly over the template; chosen
 };
 
 /// When a pose and a template are believed.

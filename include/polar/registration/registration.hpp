@@ -69,7 +69,7 @@ std::string to_string(Verdict verdict);
 struct OtherTemplate {
   std::string group;  // C1: none
   FusedTemplate fused;
-  double gain = 0, gain_std = 0;  // held-out log density per localisation over the result's; negative
+  double gain = 0, gain_std = 0;  // of views that other views predict, nat a label over the result
 };
 
 struct Registration {

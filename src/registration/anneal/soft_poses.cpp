@@ -92,7 +92,13 @@ SoftAnnealer::SoftAnnealer(const Problem& problem, std::vector<int> which, const
       options_(options),
       prior_(prior),
       frame_(options.reach, problem.planar() ? options.planar_voxel : options.voxel, problem.planar()),
-      all_(points_of(problem.sampled, options.most_localisations)) {}
+      all_(points_of(problem.sampled, options.most_localisations)) {
+  // The centroid of few labels lies anywhere about that of the structure.
+  for (const std::vector<int>& burst : problem.burst) {
+    const int labels = burst.empty() ? 1 : 1 + *std::max_element(burst.begin(), burst.end());
+    shift_.push_back(std::hypot(options.shift, options.shift_of_label / std::sqrt(labels)));
+  }
+}
 
 SoftAnnealer::Points SoftAnnealer::points_of(const Subsets& subsets, int most) const {
   Points out(problem_.size());
@@ -189,7 +195,7 @@ struct SoftAnnealer::Looked {
   const LogVolume& volume;
   const std::vector<SoftPose>& last;  // samples of the last sweep
   Eigen::Vector3f centre;
-  double beta;
+  double beta, shift;  // standard deviation of the prior of shifts
 };
 
 std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
@@ -198,8 +204,8 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
   const bool planar = problem_.planar();
   const double beta = view.beta, prior_weight = 1 / std::max(beta, 0.02);
   const Eigen::Vector3f& centre = view.centre;
-  const Scorer score(view.volume, view.few, prior_, centre, options_.shift, prior_weight);
-  const Scorer coarse(view.volume, view.fewer, prior_, centre, options_.shift,
+  const Scorer score(view.volume, view.few, prior_, centre, view.shift, prior_weight);
+  const Scorer coarse(view.volume, view.fewer, prior_, centre, view.shift,
                       prior_weight * view.fewer.count / std::max(1, view.few.count));
   const std::size_t n = grid.size();
   std::vector<float> rough(n);
@@ -216,19 +222,18 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
                    better);
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising));
   std::vector<Draw> found(promising);
-  const auto step = static_cast<float>(options_.shift);
+  const auto first = static_cast<float>(view.shift), step = static_cast<float>(options_.shift);
   for (std::size_t k = 0; k < promising; ++k) {
     Draw& d = found[k];
     d.pose = {grid[order[k]], centre};
     d.score = score(d.pose);
-    for (int ring = 1; ring <= 2; ++ring) {
+    for (float ring = first; ring > 0.4f * step; ring *= 0.5f) {
       const Eigen::Vector3f from = d.pose.translation;
       Eigen::Vector3f there[6];
       float at[6];
       int m = 0;
       for (int a = 0; a < (planar ? 2 : 3); ++a)
-        for (const float sign : {-1.0f, 1.0f})
-          there[m++] = from + sign * step / static_cast<float>(ring) * Eigen::Vector3f::Unit(a);
+        for (const float sign : {-1.0f, 1.0f}) there[m++] = from + sign * ring * Eigen::Vector3f::Unit(a);
       score(d.pose.rotation, there, static_cast<std::size_t>(m), at);
       for (int s = 0; s < m; ++s)
         if (at[s] > d.score) d.score = at[s], d.pose.translation = there[s];
@@ -309,7 +314,7 @@ void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& whic
     const LookupPoints few = some_of(all, static_cast<std::size_t>(sweep.localisations), random);
     const LookupPoints fewer = first_of(few, std::max(std::min(few.count, 24), few.count / 2));
     const double b = sweep.beta * all.count / few.count;  // the few stand for all
-    const Looked view{few, fewer, volume, state.sample[i], centre, b};
+    const Looked view{few, fewer, volume, state.sample[i], centre, b, shift_[i]};
     const std::vector<Draw> found = candidates(view, grid, spacing, random);
     double total = 0;
     const Draw* likeliest = &found.front();
@@ -317,7 +322,7 @@ void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& whic
       total += d.weight;
       if (d.score > likeliest->score) likeliest = &d;
     }
-    const Scorer score(volume, few, prior_, centre, options_.shift, 1 / std::max(b, 0.02));
+    const Scorer score(volume, few, prior_, centre, shift_[i], 1 / std::max(b, 0.02));
     const double turn = std::min(spacing, options_.jitter_turn / std::sqrt(std::max(b, 0.02)));
     const double shift = std::min(0.08, options_.jitter_shift / std::sqrt(std::max(b, 0.02)));
     const int samples = options_.samples;

@@ -97,6 +97,7 @@ class SoftAnnealer {
   PosePrior prior_;
   VoxelFrame frame_;
   Points all_;
+  std::vector<double> shift_;  // of every view of the problem: standard deviation of its centre
 };
 
 }  // namespace polar

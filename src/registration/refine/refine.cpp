@@ -82,10 +82,6 @@ void Refiner::sweep(Fit& fit, int sweeps) const {
   sweep(first_of(problem_.sampled, static_cast<std::size_t>(options_.localisations)), fit, sweeps);
 }
 
-void Refiner::sweep_blind(Fit& fit, int sweeps) const {
-  sweep(first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations)), fit, sweeps, false);
-}
-
 void Refiner::search(Fit& fit) const { search(problem_.sampled, fit); }
 
 void Refiner::search(const Subsets& subsets, Fit& fit) const {
@@ -110,7 +106,6 @@ void Refiner::search(const Subsets& subsets, Fit& fit) const {
   ++fit.rounds;
 }
 
-// Fitted again without the held-out localisations.
 Fit Refiner::blind(Fit fit) const {
   // A label that judges is missing in what was fitted.
   fit.occupancy = std::numeric_limits<double>::infinity();
@@ -125,8 +120,6 @@ Evidence Refiner::held_out(const Fit& fit) const {
     if (problem_.held_out[i].empty()) evidence[i] = NAN;
   return evidence;
 }
-
-Evidence Refiner::judge(const Fit& fit) const { return held_out(blind(fit)); }
 
 Refiner::AgainstCloud Refiner::judge_against_cloud(Fit fit) const {
   // A structure that is there shows at the first width already; the last one is as fine as all views allow.
