@@ -30,6 +30,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("most_judging", o.anneal.most_judging);
     s.field("folds", o.anneal.folds);
     s.field("unit_share", o.anneal.unit_share);
+    s.field("prior_share", o.anneal.prior_share);
     s.field("most_rotations", o.anneal.most_rotations);
     s.field("first_localisations", o.anneal.first_localisations);
     s.field("promising_share", o.anneal.promising_share);

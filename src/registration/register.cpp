@@ -154,7 +154,7 @@ class Run {
     const int rotations = views_.planar ? (exhaustive ? kExhaustivePlanarRotations : refine.planar_rotations)
                                         : (exhaustive ? kExhaustiveRotations : refine.rotations);
     const RotationGroup group = rotations_of(coarse.group);
-    const SearchGrid grid = search_grid(rotations, views_.planar, group);
+    const SearchGrid grid = search_grid(rotations, views_.planar, group, prior_of(options_));
     const Problem& problem = problems_->of(coarse.crowded);
     const Refiner refiner(problem, grid, options_.engine);
     Fit fit;
@@ -169,9 +169,7 @@ class Run {
       timed("calibration");
       fit = refiner.discrete(std::move(fit));
       timed("centres");
-      refiner.search(fit);
-      refiner.sweep(fit, refine.sweeps);
-      fit.evidence = refiner.judge(fit);
+      fit = refiner.last_round(std::move(fit));
       timed("last search");
       if (progress_.cancelled()) return cancelled();
       keep(checkpoint_, "fine", fit);
@@ -298,10 +296,11 @@ class Run {
     out_.agreement = coarse.agreement;
     out_.weights_sha256 = coarse.weights_sha256;
     out_.warnings.insert(out_.warnings.end(), coarse.warnings.begin(), coarse.warnings.end());
+    out_.history = fit.history;
     out_.rounds = fit.rounds;
     out_.converged = fit.escaped <= options_.engine.refine.settled * static_cast<double>(problem.size());
     out_.stopped_because = std::to_string(fit.escaped) + " of " + std::to_string(problem.size()) +
-                           " views moved by more than 15 degrees in the last search";
+                           " particles moved by more than 15 degrees in the last search";
     warn_about_calibration(out_.calibration, out_.warnings);
     if (!out_.symmetry) return;
     warn_about_symmetry(*out_.symmetry);

@@ -210,6 +210,20 @@ void write_rejected(File& file, const Results& r) {
   write_refused(file, r);
 }
 
+void write_rounds(File& file, const std::vector<RoundReport>& rounds, double scale_nm) {
+  std::vector<double> width_nm, moved, escaped, held_out;
+  for (const RoundReport& r : rounds) {
+    width_nm.push_back(scale_nm * r.width);
+    moved.push_back(r.moved), escaped.push_back(r.escaped);
+    held_out.push_back(r.held_out_log_likelihood);
+  }
+  const std::string group = "/run/history/";
+  file.write(group + "width_nm", width_nm);
+  file.write(group + "moved", moved);
+  file.write(group + "escaped", escaped);
+  file.write(group + "held_out_log_likelihood", held_out);
+}
+
 void write_run(File& file, const Results& r) {
   const Registration& g = r.registration;
   file.make_group("/run");
@@ -261,6 +275,7 @@ void write_run(File& file, const Results& r) {
   file.write("/run/starts/gain_std", gain_std);
   file.write("/run/starts/won", won);
   file.write_attribute("/run/starts", "agreement", g.agreement);
+  write_rounds(file, g.history, r.normalisation.scale_nm);
   if (const std::optional<TiltSpread> tilt = tilt_spread(g.view); tilt && !r.planar) {
     file.write_attribute("/run", "tilt_std_deg", tilt->std_deg);
     file.write_attribute("/run", "tilt_particles", static_cast<std::uint64_t>(tilt->particles));

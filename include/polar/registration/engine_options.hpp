@@ -31,7 +31,8 @@ struct AnnealOptions {
   int most_judging = 80;          // of a view that judge it; chosen
   int folds = 4;                  // of the views: one is judged under the density of the others; chosen
   double unit_share = 0.5;        // of them that one asymmetric unit of a group keeps at least; measured
-  int most_rotations = 60000;     // of a grid that a prior thins; chosen
+  double prior_share = 0.25;      // of them that registration.tilt_deg keeps at least; measured
+  int most_rotations = 60000;     // of a grid that a prior or a group thins; chosen
   int first_localisations = 64;   // in the first half of the sweeps; measured
   double promising_share = 0.08;  // of the rotations whose shift is improved; measured
   double shift = 0.1;             // standard deviation of the prior of shifts; measured

@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::uint32_t kStartStage = 21, kGridStage = 23, kPoseStage = 24;
 constexpr std::size_t kDepositViews = 64;  // of one block of counts
-constexpr double kTiltReach = 2.6;         // standard deviations of the tilt prior that are searched
 
 double geometric(double first, double last, double t) { return first * std::pow(last / first, t); }
 
@@ -74,10 +73,6 @@ std::vector<SoftPose> soft_poses_of(const std::vector<Pose>& pose) {
   return out;
 }
 
-PosePrior prior_of(const RegistrationOptions& options) {
-  return {options.tilt_deg * kRadiansPerDegree, options.flip};
-}
-
 AnnealStage growth_stage(const EngineOptions& options) {
   const ProposalOptions& p = options.proposals;
   const AnnealOptions& a = options.anneal;
@@ -119,7 +114,6 @@ SoftState SoftAnnealer::random_start(std::uint64_t key) const {
   state.outlier_fraction = options_.first_outlier_fraction;
   state.sample.resize(problem_.size());
   state.best.resize(problem_.size());
-  const double lowest = prior_.tilt_rad > 0 ? std::cos(std::min(1.5, 2 * prior_.tilt_rad)) : -1;
   for (const int v : which_) {
     const auto i = static_cast<std::size_t>(v);
     if (all_[i].count == 0) continue;
@@ -130,7 +124,7 @@ SoftState SoftAnnealer::random_start(std::uint64_t key) const {
         r = so3_exp({0, 0, kTwoPi * random.uniform()});
       } else {
         do r = random.rotation();
-        while ((prior_.flip ? std::abs(r(2, 2)) : r(2, 2)) < lowest);
+        while (!prior_.allows(r));
       }
       state.sample[i].push_back({r.cast<float>(), Eigen::Vector3f::Zero()});
     }
@@ -290,20 +284,18 @@ void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& whic
     spacing = kTwoPi / options_.planar_rotations;
     for (int i = 0; i < n; ++i) grid.push_back(so3_exp({0, 0, spacing * (i + first)}).cast<float>());
   } else {
-    // Rotations that a prior or a group leaves out are spent on the others.
-    double share = 1;
-    const double lowest = prior_.tilt_rad > 0 ? std::cos(std::min(1.5, kTiltReach * prior_.tilt_rad)) : -1;
-    if (prior_.tilt_rad > 0) share = (1 - lowest) / 2 * (prior_.flip ? 2 : 1);
+    // Some of the rotations that a prior or a group leaves out are spent on the others.
     const auto order = static_cast<double>(std::max<std::size_t>(1, state.group.size()));
     const int whole =
         std::min(options_.most_rotations,
-                 static_cast<int>(sweep.rotations / share * std::max(1.0, order * options_.unit_share)));
+                 static_cast<int>(sweep.rotations * std::max(1.0, options_.prior_share / prior_.share()) *
+                                  std::max(1.0, order * options_.unit_share)));
     const Eigen::Matrix3f turn = turns.rotation().cast<float>();
     for (const Eigen::Quaternionf& q : super_fibonacci(whole)) {
       const Eigen::Matrix3f r = q.toRotationMatrix() * turn;
-      const float z = prior_.flip ? std::abs(r(2, 2)) : r(2, 2);
-      if (static_cast<double>(z) >= lowest && in_asymmetric_unit(state.group, r)) grid.push_back(r);
+      if (prior_.allows(r) && in_asymmetric_unit(state.group, r)) grid.push_back(r);
     }
+    if (grid.empty()) grid.push_back(Eigen::Matrix3f::Identity());  // of a narrow prior and a large group
     spacing = 0.5 * std::cbrt(8 * kPi * kPi / whole);
   }
   const LogVolume volume(state.density, state.outlier_fraction, outlier_density(planar));
