@@ -16,7 +16,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/polar ${PROJECT_SOURCE_DIR}/smlm/include/smlm
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(TARGETS smlm polar_options polar_core polar_flames polar_model polar_latent polar_fusion polar_registration
-                polar_simulation polar_results polar_report polar_pipeline
+                polar_simulation polar_results polar_fitting polar_report polar_pipeline
         EXPORT polar-smlm-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/polar-smlm)
 install(EXPORT polar-smlm-targets NAMESPACE polar:: DESTINATION ${package_folder} COMPONENT development)

@@ -46,3 +46,16 @@ function(polar_kernel target source)
     target_sources(${target} PRIVATE ${copy})
   endforeach()
 endfunction()
+
+# Files that become part of the program, so that it needs no path of the machine: sets <variable> to a source that
+# defines <namespace>::embedded_texts(), a map from their names to their texts. `header` declares it.
+function(polar_embed variable header namespace)
+  get_filename_component(stem ${header} NAME_WE)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded_${stem}.cpp)
+  add_custom_command(OUTPUT ${source}
+    COMMAND ${CMAKE_COMMAND} "-DFILES=${ARGN}" -DOUTPUT=${source} -DHEADER=${header} -DNAMESPACE=${namespace}
+            -P ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
+    DEPENDS ${ARGN} ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
+    VERBATIM)
+  set(${variable} ${source} PARENT_SCOPE)
+endfunction()

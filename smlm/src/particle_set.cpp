@@ -31,14 +31,15 @@ std::optional<Error> obstacle_to_registration(const LocalisationTable& table) {
   const auto obstacle = [&](const std::string& what, const std::string& remedy) {
     return Error(Fault::input, file, what + (lost.empty() ? "" : ": " + lost), remedy);
   };
-  if (table.size() == 0) return obstacle("no localisation is left", "correct the table");
+  if (table.size() == 0)
+    return obstacle("no localisation is left", "correct the table, or widen input.filters");
   if (table.particle_names.empty() && table.picked) {
     return obstacle("no place holds enough localisations to be picked",
                     "do input.pick.radius_nm and input.pick.min_localisations suit the particles?");
   }
   if (table.particle_names.empty() && table.unassigned.empty()) {
-    return obstacle("no column says which localisation belongs to which particle",
-                    "name it under input.columns.particle, or use input.particles: one_per_file");
+    return Error(Fault::input, file, "no column says which localisation belongs to which particle",
+                 "name it under input.columns.particle, or use input.particles: one_per_file");
   }
   std::vector<bool> filled(table.particle_names.size(), false);
   for (const std::int64_t particle : table.particle) {

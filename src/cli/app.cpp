@@ -15,6 +15,8 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
   add_apply(*app, action);
   add_report(*app, action);
   add_evaluate(*app, action);
+  add_fit(*app, action);
+  add_modes(*app, action);
   add_inspect(*app, action);
   add_train(*app, action);
   return app;

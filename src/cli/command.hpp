@@ -16,6 +16,8 @@ void add_export(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
+void add_fit(CLI::App& app, Action& action);
+void add_modes(CLI::App& app, Action& action);
 void add_inspect(CLI::App& app, Action& action);
 void add_train(CLI::App& app, Action& action);
 

@@ -68,6 +68,25 @@ std::vector<std::vector<float>> occupancy(const Mixture& mixture, const FusionDa
   return factors;
 }
 
+std::vector<std::vector<double>> attributed(const Mixture& mixture, const FusionData& data,
+                                            const std::vector<Pose>& poses) {
+  const BlockedMixture blocked(mixture);
+  const auto padded = static_cast<std::size_t>(blocked.padded_size());
+  std::vector<std::vector<double>> count(data.size());
+  parallel_for(data.size(), [&](std::size_t i) {
+    const KernelLocalisations& view = data.impl().view[i];
+    if (view.empty()) return;
+    ViewFrame frame(blocked);
+    std::vector<float> sums(kernel::kSums * padded, 0.0f), scratch(padded), inlier(view.size()),
+        density(view.size());
+    mixture_kernel().accumulate(frame.at(poses[i].inverse(), blocked.weight()), view.data(),
+                                static_cast<int>(view.size()), blocked.background(), sums.data(),
+                                inlier.data(), density.data(), scratch.data());
+    count[i].assign(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(mixture.size()));
+  });
+  return count;
+}
+
 double likeliest_strength(const Mixture& mixture, const FusionData& data, const std::vector<Pose>& poses,
                           double reach) {
   // Patches: a centre joins the heaviest one before it within reach, so that counts are added once.
@@ -88,20 +107,10 @@ double likeliest_strength(const Mixture& mixture, const FusionData& data, const 
   std::vector<double> share(patches, 0.0);
   for (std::size_t k = 0; k < centres; ++k)
     share[patch[k]] += static_cast<double>(mixture.weight[static_cast<Eigen::Index>(k)]);
-  const BlockedMixture blocked(mixture);
-  const auto padded = static_cast<std::size_t>(blocked.padded_size());
   std::vector<std::vector<double>> count(data.size(), std::vector<double>(patches, 0.0));
-  parallel_for(data.size(), [&](std::size_t i) {
-    const KernelLocalisations& view = data.impl().view[i];
-    if (view.empty()) return;
-    ViewFrame frame(blocked);
-    std::vector<float> sums(kernel::kSums * padded, 0.0f), scratch(padded), inlier(view.size()),
-        density(view.size());
-    mixture_kernel().accumulate(frame.at(poses[i].inverse(), blocked.weight()), view.data(),
-                                static_cast<int>(view.size()), blocked.background(), sums.data(),
-                                inlier.data(), density.data(), scratch.data());
-    for (std::size_t k = 0; k < centres; ++k) count[i][patch[k]] += static_cast<double>(sums[k]);
-  });
+  const std::vector<std::vector<double>> of_centre = attributed(mixture, data, poses);
+  for (std::size_t i = 0; i < data.size(); ++i)
+    for (std::size_t k = 0; k < of_centre[i].size(); ++k) count[i][patch[k]] += of_centre[i][k];
   const auto evidence = [&](double strength) {
     double total = 0;
     for (const std::vector<double>& n : count) {

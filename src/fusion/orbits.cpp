@@ -67,6 +67,12 @@ Eigen::Matrix3Xf seeds(const Mixture& m, const RotationGroup& group, double dist
 
 }  // namespace
 
+double angle_modulo(const RotationGroup& group, const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  double least = geodesic_angle(a, b);
+  for (const Eigen::Matrix3d& g : group) least = std::min(least, geodesic_angle(g * a, b));
+  return least;
+}
+
 Eigen::Vector3d onto_axes(Eigen::Vector3d x, const RotationGroup& group, double distance) {
   const auto from_axis = [&](const Eigen::Matrix3d& g) {
     const Eigen::Vector3d axis = so3_log(g).normalized();  // of the identity: 0

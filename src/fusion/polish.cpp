@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kResponsibilityRounds = 2;
 constexpr int kIterations = 8;
+constexpr int kLastSteps = 4;  // evaluations on the exact likelihood
 constexpr int kPoseParameters = 6;
 constexpr double kDifference = 1e-4;  // step of the second derivative, rad and particle radii
 
@@ -150,7 +151,39 @@ Matrix6 adjoint(const Pose& template_from_view) {
   return a;
 }
 
+// view_from_template: least squares for responsibilities renewed, then uphill on the exact likelihood.
+RefinedPose highest(ViewFrame& frame, const KernelLocalisations& view, const Mixture& mixture, Pose pose,
+                    float background, bool planar, const float* weight) {
+  double best = log_likelihood(frame, view, pose, background, weight);
+  const std::vector<Eigen::Matrix3d> roots = roots_of(view);
+  for (int round = 0; round < kResponsibilityRounds; ++round) {
+    const std::vector<Term> terms = terms_at(mixture, frame.at(pose, weight), background, view, roots);
+    if (terms.size() < 3) break;
+    const Pose next = least_squares(terms, pose, planar);
+    const double there = log_likelihood(frame, view, next, background, weight);
+    if (!(there > best)) break;
+    best = there, pose = next;
+  }
+  return refine_pose(frame, view, pose, background, planar, kLastSteps, weight);
+}
+
 }  // namespace
+
+std::vector<Pose> polished_poses(const Mixture& mixture, const FusionData& data,
+                                 const std::vector<Pose>& poses) {
+  const BlockedMixture blocked(mixture);
+  std::vector<Pose> out = poses;
+  parallel_for(data.size(), [&](std::size_t i) {
+    const KernelLocalisations& view = data.impl().view[i];
+    if (view.empty()) return;
+    ViewFrame frame(blocked);
+    std::vector<float> buffer;
+    const float* weight = view_weight(data, i, blocked.weight(), buffer);
+    out[i] = highest(frame, view, mixture, poses[i].inverse(), blocked.background(), data.planar(), weight)
+                 .view_from_template.inverse();
+  });
+  return out;
+}
 
 std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
                                  const std::vector<Pose>& poses, const std::vector<std::vector<int>>& burst) {
@@ -165,19 +198,9 @@ std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
     ViewFrame frame(blocked);
     std::vector<float> buffer;
     const float* weight = view_weight(data, i, blocked.weight(), buffer);
-    Pose pose = poses[i].inverse();
-    double best = log_likelihood(frame, view, pose, background, weight);
-    const std::vector<Eigen::Matrix3d> roots = roots_of(view);
-    for (int round = 0; round < kResponsibilityRounds; ++round) {
-      const std::vector<Term> terms = terms_at(mixture, frame.at(pose, weight), background, view, roots);
-      if (terms.size() < 3) break;
-      const Pose next = least_squares(terms, pose, data.planar());
-      const double there = log_likelihood(frame, view, next, background, weight);
-      if (!(there > best)) break;
-      best = there, pose = next;
-    }
-    const RefinedPose refined = refine_pose(frame, view, pose, background, data.planar(), 4, weight);
-    pose = refined.view_from_template;
+    const RefinedPose refined =
+        highest(frame, view, mixture, poses[i].inverse(), background, data.planar(), weight);
+    const Pose& pose = refined.view_from_template;
     result.template_from_view = pose.inverse();
     result.log_likelihood = refined.log_likelihood / static_cast<double>(view.size());
     bool positive = false;

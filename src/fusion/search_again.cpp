@@ -14,8 +14,8 @@ namespace polar {
 namespace {
 
 // Radians between neighbours of a grid of so many rotations over SO(3) or the circle.
-double grid_spacing(std::size_t rotations, bool planar) {
-  const auto n = static_cast<double>(std::max<std::size_t>(1, rotations));
+double grid_spacing(double rotations, bool planar) {
+  const double n = std::max(1.0, rotations);
   return planar ? kTwoPi / n : std::cbrt(8 * kPi * kPi / n);
 }
 
@@ -30,13 +30,6 @@ bool worse(const RefinedPose& a, const RefinedPose& b) { return a.log_likelihood
 std::vector<std::uint32_t> first_of(const std::vector<std::uint32_t>& list, int most) {
   const auto count = std::min(list.size(), static_cast<std::size_t>(most));
   return {list.begin(), list.begin() + static_cast<std::ptrdiff_t>(count)};
-}
-
-// Angle between template_from_view rotations, the nearest of their images.
-double angle_modulo(const RotationGroup& group, const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  double least = geodesic_angle(a, b);
-  for (const Eigen::Matrix3d& g : group) least = std::min(least, geodesic_angle(g * a, b));
-  return least;
 }
 
 // Those that lie no farther below the best.
@@ -55,11 +48,14 @@ std::vector<Pose> likely_modes(const DirectionVolumes& volumes, const SearchView
                                const GridScores& scores, const SearchGrid& grid, const Eigen::Matrix3f& turn,
                                const SearchAgainOptions& options, bool planar) {
   const auto images = static_cast<int>(std::max<std::size_t>(1, options.group.size()));
-  const double spacing = grid_spacing(grid.rotation.size() * static_cast<std::size_t>(images), planar);
+  const double spacing =
+      grid_spacing(static_cast<double>(grid.rotation.size()) * images / grid.prior.share(), planar);
   std::vector<LookedUpPose> found;
   for (const Pose& b : basins(scores, grid, turn, options.basins * std::min(images, 2)))
-    found.push_back(climbed(volumes, view, b, static_cast<float>(options.climb_turn * spacing),
-                            static_cast<float>(options.climb_shift), planar));
+    if (const LookedUpPose p = climbed(volumes, view, b, static_cast<float>(options.climb_turn * spacing),
+                                       static_cast<float>(options.climb_shift), planar);
+        grid.prior.allows(p.rotation, options.group))
+      found.push_back(p);
   std::stable_sort(found.begin(), found.end(),
                    [](const LookedUpPose& a, const LookedUpPose& b) { return a.score > b.score; });
   std::vector<Pose> out;
@@ -114,7 +110,10 @@ SearchAgainReport search_again(const Views& views, const std::vector<Eigen::Vect
     if (few.empty()) return;
     ViewFrame frame(blocked);
     const auto uphill = [&](const KernelLocalisations& of, const Pose& start, int evaluations) {
-      return refine_pose(frame, of, start, blocked.background(), noise.planar, evaluations);
+      RefinedPose p = refine_pose(frame, of, start, blocked.background(), noise.planar, evaluations);
+      const Eigen::Matrix3d template_from_view = p.view_from_template.rotation.transpose();
+      if (!grid.prior.allows(template_from_view, options.group)) p.log_likelihood = -INFINITY;
+      return p;
     };
     const SearchView looked = search_view(views.view[i], axes[i], noise, classes, few);
     const GridScores scores = score_grid(volumes, looked, grid, turn, options.grid);

@@ -1,12 +1,11 @@
 #include "polar/pipeline/apply.hpp"
 
 #include <filesystem>
-#include <map>
 #include <optional>
 
+#include "named_poses.hpp"
 #include "output_directory.hpp"
 #include "polar/pipeline/outputs.hpp"
-#include "polar/results/pose_table.hpp"
 #include "polar/results/results.hpp"
 #include "smlm/error.hpp"
 #include "smlm/table_reader.hpp"
@@ -16,20 +15,9 @@ namespace polar {
 namespace {
 constexpr double kInPlane = 1e-9;  // of a rotation's z axis: what text with 17 digits leaves of 0
 
-using Poses = std::map<std::string, std::optional<Pose>>;
-
 std::string poses_file(const std::string& result) {
   std::error_code unseen;  // whoever opens it says why
   return std::filesystem::is_directory(result, unseen) ? result + "/poses.csv" : result;
-}
-
-Poses read_poses(const std::string& path) {
-  Poses poses;
-  for (const PoseRow& row : read_pose_table(path))
-    if (!poses.emplace(row.particle, row.template_from_view).second)
-      throw smlm::Error(smlm::Fault::input, path, "particle '" + row.particle + "' occurs twice",
-                        "give the poses of one run");
-  return poses;
 }
 
 bool turns_out_of_plane(const Pose& pose) {
@@ -40,7 +28,7 @@ bool turns_out_of_plane(const Pose& pose) {
 std::vector<std::string> apply_poses(const ApplyOptions& options) {
   const pipeline::OutputDirectory directory(options.directory, {options.overwrite, false});
   const std::string path = poses_file(options.result);
-  const Poses poses = read_poses(path);
+  const pipeline::NamedPoses poses = pipeline::read_named_poses(path);
   const smlm::ParticleSet set = smlm::group_particles(smlm::read_tables(options.tables, options.read));
   std::vector<std::optional<Pose>> pose;
   std::size_t moved = 0, unknown = 0;

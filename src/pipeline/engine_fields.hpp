@@ -30,10 +30,12 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("most_judging", o.anneal.most_judging);
     s.field("folds", o.anneal.folds);
     s.field("unit_share", o.anneal.unit_share);
+    s.field("prior_share", o.anneal.prior_share);
     s.field("most_rotations", o.anneal.most_rotations);
     s.field("first_localisations", o.anneal.first_localisations);
     s.field("promising_share", o.anneal.promising_share);
     s.field("shift", o.anneal.shift);
+    s.field("shift_of_label", o.anneal.shift_of_label);
     s.field("samples", o.anneal.samples);
     s.field("jitters", o.anneal.jitters);
     s.field("last_sweeps", o.anneal.last_sweeps);
@@ -80,6 +82,7 @@ void engine_fields(Section& expert, EngineOptions& o) {
     s.field("means_loss", o.symmetry.means_loss);
     s.field("relabellings", o.symmetry.relabellings);
     s.field("relabelling_sweeps", o.symmetry.relabelling_sweeps);
+    s.field("relabelling_views", o.symmetry.relabelling_views);
   });
   expert.section("refine", [&](auto& s) {
     s.field("localisations_per_centre", o.refine.localisations_per_centre);

@@ -150,6 +150,11 @@ std::string agreement_text(double agreement) {
   return format(", the best two pose %.0f %% of the particles alike", 100 * agreement);
 }
 
+std::string start_text(const Registration& g) {
+  if (g.starts.empty()) return "the poses of registration.initial_poses";
+  return winner(g) + " won of " + std::to_string(g.starts.size()) + agreement_text(g.agreement);
+}
+
 // NaN has no place in JSON.
 nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
@@ -233,16 +238,15 @@ std::vector<std::string> describe(const Results& r, double tilt_deg, const std::
                   format("%.2f nm", precision.translation_std_nm) +
                   " (median of the estimated standard deviations)");
   if (!unlike.empty()) lines.push_back(strangers_line(unlike));
-  lines.push_back("start        " + winner(g) + " won of " + std::to_string(g.starts.size()) +
-                  agreement_text(g.agreement));
+  lines.push_back("start        " + start_text(g));
   lines.push_back("rounds       " + std::to_string(g.rounds) +
                   (g.converged ? ", converged: " : ", not converged: ") + g.stopped_because);
   if (g.symmetry) lines.push_back(pipeline::symmetry_line(*g.symmetry, r.normalisation.scale_nm));
   if (g.other)
     lines.push_back("other        the average " +
                     (g.other->group == "C1" ? "without symmetry" : "with " + g.other->group) +
-                    format(" explains localisations kept apart by %+.4f", g.other->gain) +
-                    format(" +- %.4f nat", g.other->gain_std));
+                    format(" predicts the labels of other views by %+.4f", g.other->gain) +
+                    format(" +- %.4f nat a label", g.other->gain_std));
   if (tilt_deg > 0) lines.push_back(tilt_line(r, tilt_deg));
   if (r.resolution) lines.push_back(resolution_line(*r.resolution));
   lines.push_back("seconds      " + format("%.1f", seconds));

@@ -33,6 +33,8 @@ void fields(Visitor& v, SimulateConfig& c) {
     s.field("sigma_y_factor", o.sigma_y_factor);
     s.field("sigma_z_factor", o.sigma_z_factor);
     s.field("sigma_per", o.sigma_per);
+    s.field("radius_std_nm", o.radius_std_nm);
+    s.field("height_std_nm", o.height_std_nm);
     s.field("visibility", o.visibility);
     s.field("outlier_fraction", o.outlier_fraction);
     s.field("outliers", o.outliers);

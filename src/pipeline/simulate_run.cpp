@@ -14,6 +14,7 @@
 #include "polar/simulation/cramer_rao.hpp"
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
+#include "smlm/number_text.hpp"
 
 namespace polar {
 
@@ -45,6 +46,15 @@ std::string sites_text(const Structure& structure) {
                   structure.site_nm(2, k));
     text += line;
   }
+  return text;
+}
+
+// Each copy's own shape, where copies differ.
+std::string shapes_text(const Simulation& s) {
+  std::string text = "particle,radius_change_nm,height_change_nm\n";
+  for (std::size_t i = 0; i < s.particle.size(); ++i)
+    text += s.table.particle_names[i] + "," + smlm::number_text(s.particle[i].radius_change_nm) + "," +
+            smlm::number_text(s.particle[i].height_change_nm) + "\n";
   return text;
 }
 
@@ -106,6 +116,8 @@ std::vector<std::string> run_simulation(const SimulateConfig& config, bool overw
   smlm::write_file_atomically(folder + "poses.csv",
                               format_pose_table(true_poses(s, config.simulation.cramer_rao)));
   smlm::write_file_atomically(folder + "sites.csv", sites_text(structure));
+  if (config.simulation.radius_std_nm > 0 || config.simulation.height_std_nm > 0)
+    smlm::write_file_atomically(folder + "shapes.csv", shapes_text(s));
   smlm::write_file_atomically(folder + "simulation.yaml", portable_text(config));
   smlm::write_file_atomically(folder + kTruthFile, pipeline::json_text(summary));
 

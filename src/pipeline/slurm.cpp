@@ -87,7 +87,7 @@ SlurmBatch slurm_batch(const BatchConfig& config, const BatchFlags& flags, const
   const bool own = !options.template_file.empty();
   batch.script = pipeline::slurm_script_text(
       {batch.names, polar, options.restarts},
-      own ? content_of(options.template_file) : pipeline::template_text(kShippedTemplate),
+      own ? content_of(options.template_file) : pipeline::scripts::embedded_texts().at(kShippedTemplate),
       own ? options.template_file : kShippedTemplate);
   batch.tasks = batch.tables = options_of_both(options, config.directory);
   const std::string limit = options.at_once > 0 ? "%" + std::to_string(options.at_once) : "";

@@ -1,13 +1,16 @@
 // The script that Slurm runs for a batch, from ours (configs/batch_slurm.sh) or a centre's own.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 namespace polar::pipeline {
 
-/// Of the files that are part of the program.
-const std::string& template_text(const std::string& name);
+namespace scripts {
+/// The files that are part of the program, by name.
+const std::map<std::string, std::string>& embedded_texts();
+}  // namespace scripts
 
 /// What a template's {{names}}, {{polar}} and {{restarts}} stand for.
 struct SlurmScript {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "polar/core/constants.hpp"
 #include "polar/core/symmetry_group.hpp"
 #include "polar/registration/register.hpp"
 
@@ -20,6 +21,10 @@ void check_symmetry(const RegistrationOptions& options, std::vector<std::string>
 }
 
 }  // namespace
+
+PosePrior prior_of(const RegistrationOptions& options) {
+  return {options.tilt_deg * kRadiansPerDegree, options.flip};
+}
 
 std::vector<std::string> violations(const RegistrationOptions& options) {
   std::vector<std::string> faults;

@@ -130,10 +130,11 @@ class Run {
     timed("all views");
     find_noise(coarse);
     if (progress_.cancelled()) return false;
+    const std::string asked = names_a_group(options_.symmetry) ? options_.symmetry : "";
     if (options_.symmetry != "none") {
-      const std::string asked = names_a_group(options_.symmetry) ? options_.symmetry : "";
       SymmetryChoice choice =
-          choose_symmetry(problems_->of(coarse.crowded), options_, state, asked, progress_);
+          choose_symmetry(problems_->of(coarse.crowded), options_, state, asked,
+                          coarse.agreement >= options_.engine.proposals.agreeing_share, progress_);
       if (progress_.cancelled()) return false;
       coarse.symmetry = std::move(choice.report);
       coarse.continuous = choice.continuous;
@@ -153,29 +154,28 @@ class Run {
     const int rotations = views_.planar ? (exhaustive ? kExhaustivePlanarRotations : refine.planar_rotations)
                                         : (exhaustive ? kExhaustiveRotations : refine.rotations);
     const RotationGroup group = rotations_of(coarse.group);
-    const SearchGrid grid = search_grid(rotations, views_.planar, group);
+    const SearchGrid grid = search_grid(rotations, views_.planar, group, prior_of(options_));
     const Problem& problem = problems_->of(coarse.crowded);
     const Refiner refiner(problem, grid, options_.engine);
     Fit fit;
     if (!restore(checkpoint_, "fine", fit)) {
       fit = refiner.rounds(refiner.begin(std::move(coarse.pose), coarse.noise, group), progress_);
       timed("rounds");
-      fit = regrown(problem, refiner, std::move(fit));
+      if (coarse.agreement < options_.engine.proposals.agreeing_share)
+        fit = regrown(problem, refiner, std::move(fit));
       timed("regrown");
       if (progress_.cancelled()) return cancelled();
       fit = refiner.calibrated(std::move(fit));
       timed("calibration");
       fit = refiner.discrete(std::move(fit));
       timed("centres");
-      refiner.search(fit);
-      refiner.sweep(fit, refine.sweeps);
-      fit.evidence = refiner.judge(fit);
+      fit = refiner.last_round(std::move(fit));
       timed("last search");
       if (progress_.cancelled()) return cancelled();
       keep(checkpoint_, "fine", fit);
     }
     out_.symmetry = coarse.symmetry;
-    if (!group.empty()) fit = tested(problem, refiner, coarse.group, std::move(fit));
+    if (!group.empty()) fit = tested(problem, coarse.group, std::move(fit));
     timed("symmetry tested");
     const Refiner::AgainstCloud against = against_cloud(grid, problem, fit);
     timed("verdict");
@@ -280,9 +280,8 @@ class Run {
   }
 
   // With the group against without; evidence decides which is the result.
-  Fit tested(const Problem& problem, const Refiner& refiner, const std::string& name, Fit symmetric) {
-    Fit plain = relaxed(problem, refiner, options_.engine, symmetric);
-    const Comparison c = compare(symmetric.evidence, plain.evidence);
+  Fit tested(const Problem& problem, const std::string& name, Fit symmetric) {
+    auto [plain, c] = relaxed(problem, options_.engine, symmetric);
     const bool without =
         c.better_by(options_.engine.evidence.standard_errors) && !names_a_group(options_.symmetry);
     if (out_.symmetry) out_.symmetry->in_use = !without;
@@ -297,10 +296,11 @@ class Run {
     out_.agreement = coarse.agreement;
     out_.weights_sha256 = coarse.weights_sha256;
     out_.warnings.insert(out_.warnings.end(), coarse.warnings.begin(), coarse.warnings.end());
+    out_.history = fit.history;
     out_.rounds = fit.rounds;
     out_.converged = fit.escaped <= options_.engine.refine.settled * static_cast<double>(problem.size());
     out_.stopped_because = std::to_string(fit.escaped) + " of " + std::to_string(problem.size()) +
-                           " views moved by more than 15 degrees in the last search";
+                           " particles moved by more than 15 degrees in the last search";
     warn_about_calibration(out_.calibration, out_.warnings);
     if (!out_.symmetry) return;
     warn_about_symmetry(*out_.symmetry);

@@ -60,6 +60,11 @@ void fields(Archive& archive, StartReport& value) {
   archive(name, held_out, gain, gain_std, won);
 }
 template <class Archive>
+void fields(Archive& archive, RoundReport& value) {
+  auto& [width, moved, escaped, held_out] = value;
+  archive(width, moved, escaped, held_out);
+}
+template <class Archive>
 void fields(Archive& archive, CoarseState& value) {
   auto& [pose, crowded, group, noise, continuous, symmetry, starts, agreement, weights_sha256, warnings] =
       value;
@@ -70,8 +75,8 @@ void fields(Archive& archive, CoarseState& value) {
 }
 template <class Archive>
 void fields(Archive& archive, Fit& value) {
-  auto& [mixture, pose, noise, group, margin, occupancy, evidence, rounds, escaped] = value;
-  archive(mixture, pose, noise, group, margin, occupancy, evidence, rounds, escaped);
+  auto& [mixture, pose, noise, group, margin, occupancy, evidence, history, rounds, escaped] = value;
+  archive(mixture, pose, noise, group, margin, occupancy, evidence, history, rounds, escaped);
 }
 
 }  // namespace states

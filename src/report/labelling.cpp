@@ -28,16 +28,29 @@ void add_places(const RunRecord& record, Section& s) {
   const LabellingRecord& l = *record.labelling;
   const bool units = l.of == "symmetric units";
   const std::string place = units ? "unit" : "site";
-  const auto n = static_cast<double>(accepted_particles(record));
   s.notes.push_back(
       "Labelling efficiency " + percent(l.efficiency, 1) + " (" + percent(l.low, 1) + " to " +
       percent(l.high, 1) + "), of " + counted(l.occupancy.size(), units ? "symmetric unit" : "site") +
       (l.labels_per_site > 1 ? " with " + std::to_string(l.labels_per_site) + " labels each" : "") +
       ". A localisation counts for every " + place + " that could have made it, as far as it is probable.");
+  s.figures.push_back({"labelled-a-particle", "Labelled " + place + "s a particle",
+                       expected_svg(l.particles_with, 0, "labelled " + place + "s", "particles"),
+                       "Of " + std::to_string(l.occupancy.size()) + "."});
+  s.figures.push_back({"blinks", "Localisations of a label",
+                       expected_svg(l.labels_of, 1, "localisations of a labelled " + place, place + "s"),
+                       "Blinks, times the labels of a " + place + "."});
+}
+
+void add_occupancy(const RunRecord& record, Section& s) {
+  const LabellingRecord& l = *record.labelling;
+  const bool units = l.of == "symmetric units";
+  const std::string place = units ? "unit" : "site";
+  const auto n = static_cast<double>(accepted_particles(record));
   if (l.occupancy.size() > kMostPlaces) {
-    s.figures.push_back(absent(
-        "occupancy", "Occupancy",
-        "There are more than " + std::to_string(kMostPlaces) + " " + place + "s: sites.csv lists them."));
+    s.figures.push_back(absent("occupancy", "Occupancy",
+                               "There are more than " + std::to_string(kMostPlaces) + " " + place +
+                                   "s: " + (units ? "/labelling/occupancy of results.h5" : "sites.csv") +
+                                   " lists them."));
   } else {
     std::vector<Bar> bars;
     for (std::size_t k = 0; k < l.occupancy.size(); ++k) {
@@ -53,12 +66,6 @@ void add_places(const RunRecord& record, Section& s) {
                      "(Wilson).") +
              (units ? " Which unit is the first is a convention of each pose." : "")});
   }
-  s.figures.push_back({"labelled-a-particle", "Labelled " + place + "s a particle",
-                       expected_svg(l.particles_with, 0, "labelled " + place + "s", "particles"),
-                       "Of " + std::to_string(l.occupancy.size()) + "."});
-  s.figures.push_back({"blinks", "Localisations of a label",
-                       expected_svg(l.labels_of, 1, "localisations of a labelled " + place, place + "s"),
-                       "Blinks, times the labels of a " + place + "."});
 }
 }  // namespace
 
@@ -74,20 +81,22 @@ Section labelling_section(const Subject& subject) {
   std::vector<double> counts;
   for (const PoseRow& p : subject.record.poses)
     if (p.accepted) counts.push_back(static_cast<double>(p.n_localisations));
-  if (subject.record.labelling && !counts.empty())
-    add_places(subject.record, s);
+  if (counts.empty()) {
+    s.figures.push_back(absent("occupancy", "Occupancy", "No particle has a pose."));
+    s.figures.push_back(absent("localisations", "Localisations a particle", "No particle has a pose."));
+    return s;
+  }
+  const bool counted_labels = subject.record.labelling.has_value();
+  if (counted_labels) add_places(subject.record, s);
+  s.figures.push_back({"localisations", "Localisations a particle",
+                       histogram_svg(histogram(counts), "localisations", "particles", "c1"),
+                       "Median " + digits(upper_median(counts)) + "."});
+  if (counted_labels)
+    add_occupancy(subject.record, s);
   else
     s.figures.push_back(absent("occupancy", "Occupancy",
-                               counts.empty()
-                                   ? "No particle has a pose."
-                                   : "Labels are counted on sites that can be told apart, or on the units "
-                                     "of a symmetry: the average has neither."));
-  if (counts.empty())
-    s.figures.push_back(absent("localisations", "Localisations a particle", "No particle has a pose."));
-  else
-    s.figures.push_back({"localisations", "Localisations a particle",
-                         histogram_svg(histogram(counts), "localisations", "particles", "c1"),
-                         "Median " + digits(upper_median(counts)) + "."});
+                               "Labels are counted on sites that can be told apart, or on the units "
+                               "of a symmetry: the average has neither."));
   return s;
 }
 

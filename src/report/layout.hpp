@@ -3,13 +3,17 @@
 #pragma once
 
 #include <kainjow/mustache.hpp>
+#include <map>
 #include <string>
 
 namespace polar::report {
 
 using Data = kainjow::mustache::data;
 
-/// The embedded file of that name.
+/// The embedded files, by name.
+const std::map<std::string, std::string>& embedded_texts();
+
+/// The one of that name.
 const std::string& template_text(const std::string& name);
 
 /// The template of that name with `data` in it. A template that cannot be parsed is a fault of this program.

@@ -245,13 +245,14 @@ void read_search(const File& file, RunRecord& r) {
     r.starts.push_back({name[i], at(held, i, PoseRow::kNone), at(held_std, i, PoseRow::kNone),
                         at<std::uint8_t>(won, i, 0) != 0});
   r.agreement = attribute(file, "/run/starts", "agreement", 0.0);
-  const auto moved = numbers<double>(file, "/run/history/moved"),
-             escaped = numbers<double>(file, "/run/history/escaped"),
-             likelihood = numbers<double>(file, "/run/history/log_likelihood");
-  const std::size_t rounds = std::max({moved.size(), escaped.size(), likelihood.size()});
-  for (std::size_t i = 0; i < rounds; ++i)
-    r.history.push_back(
-        {at(moved, i, PoseRow::kNone), at(escaped, i, PoseRow::kNone), at(likelihood, i, PoseRow::kNone)});
+  const std::string rounds = "/run/history/";
+  const auto width = numbers<double>(file, rounds + "width_nm"),
+             moved = numbers<double>(file, rounds + "moved"),
+             escaped = numbers<double>(file, rounds + "escaped"),
+             judged = numbers<double>(file, rounds + "held_out_log_likelihood");
+  for (std::size_t i = 0; i < judged.size(); ++i)
+    r.history.push_back({at(width, i, PoseRow::kNone), at(moved, i, PoseRow::kNone),
+                         at(escaped, i, PoseRow::kNone), judged[i]});
   r.stage = texts(file, "/run/timings/stage");
   r.stage_seconds = numbers<double>(file, "/run/timings/seconds");
   if (r.stage.size() != r.stage_seconds.size()) damaged(file, "/run/timings: columns of different lengths");

@@ -25,6 +25,12 @@ struct Score {
   }
 };
 
+// A margin needs two poses: where the search found one only, the record holds 0 and all of the posterior is
+// there.
+double margin_of(const ParticleScores& p) {
+  return p.margin == 0 && p.fit.posterior_share == 1 ? PoseRow::kNone : p.margin;
+}
+
 std::vector<Score> scores_of(const RunRecord& r) {
   std::vector<Score> s = {
       {"log-likelihood", "Log likelihood", "log likelihood [nat a localisation]", ""},
@@ -39,7 +45,7 @@ std::vector<Score> scores_of(const RunRecord& r) {
       {"outliers", "Outliers", "share of localisations that the template does not explain", "",
        r.most_outliers}};
   const auto add = [&](const ParticleScores& p, bool accepted) {
-    const double of[] = {p.log_likelihood,     p.margin,         p.fit.posterior_share, p.rotation_std_deg,
+    const double of[] = {p.log_likelihood,     margin_of(p),     p.fit.posterior_share, p.rotation_std_deg,
                          p.translation_std_nm, p.fit.visibility, p.fit.outlier_fraction};
     for (std::size_t k = 0; k < s.size(); ++k) (accepted ? s[k].values : s[k].refused).push_back(of[k]);
   };
@@ -101,7 +107,9 @@ Figure score_figure(const Score& score, std::size_t unlike) {
   const std::vector<double> finite = sorted_finite(all), accepted = sorted_finite(score.values);
   if (finite.empty())
     return absent(score.id, score.title,
-                  all.empty() ? "No particle has a pose." : "The record does not hold it.");
+                  all.empty()                         ? "No particle has a pose."
+                  : std::string(score.id) == "margin" ? "No second pose was found for any particle."
+                                                      : "The record does not hold it.");
   if (finite.front() == finite.back())
     return absent(score.id, score.title,
                   "All particles have " + digits(finite[0]) + "." + limit_text(score) +
@@ -112,6 +120,9 @@ Figure score_figure(const Score& score, std::size_t unlike) {
       accepted.empty() ? "No particle was accepted. " : "Median " + digits(upper_median(accepted)) + ". ";
   caption += std::string(score.caption) + (*score.caption ? " " : "");
   std::vector<std::pair<double, std::string>> cuts;
+  if (std::string(score.id) == "margin" && finite.size() < all.size())
+    caption += "Without those for which no second pose was found: " +
+               counted(all.size() - finite.size(), "particle") + ". ";
   if (std::string(score.id) == "log-likelihood") {
     cuts = stranger_cuts(accepted);
     caption += cuts.empty() ? "Too few particles to tell one that is unlike the others."

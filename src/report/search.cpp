@@ -23,7 +23,7 @@ Bar start_bar(const StartRecord& start, double value, double error) {
 
 void add_starts(const RunRecord& record, Section& s) {
   if (record.starts.empty()) {
-    s.figures.push_back(absent("starts", "Starts", "No starts competed."));
+    s.figures.push_back(absent("starts", "Starts", "No starts competed: the poses were given."));
     return;
   }
   std::vector<Bar> bars;
@@ -44,26 +44,37 @@ void add_starts(const RunRecord& record, Section& s) {
 
 void add_rounds(const RunRecord& record, Section& s) {
   if (record.history.empty()) {
-    s.figures.push_back(absent("rounds", "Round by round",
-                               "The record holds how many rounds there were (" +
-                                   std::to_string(record.rounds) + "), not what moved or escaped in each."));
+    s.figures.push_back(
+        absent("rounds", "Round by round", "The record does not hold what moved or escaped in each round."));
     return;
   }
-  std::vector<double> round, moved, escaped;
+  std::vector<double> round, width, moved, escaped, held_out;
   for (const RoundRecord& r : record.history) {
     round.push_back(static_cast<double>(round.size() + 1));
+    width.push_back(r.width_nm);
     moved.push_back(r.moved), escaped.push_back(r.escaped);
+    held_out.push_back(r.held_out);
   }
+  Axis across = axis_of(round, "round");
+  for (const double n : round) across.ticks.push_back({n, fixed(n, 0)});
   std::vector<double> both = moved;
   both.insert(both.end(), escaped.begin(), escaped.end());
   Axis up = axis_of(both, "particles");
   up.low = 0;
-  Plot plot(axis_of(round, "round"), up);
+  Plot plot(across, up);
   plot.line("c1", round, moved), plot.dots("c1", round, moved);
   plot.line("c2", round, escaped), plot.dots("c2", round, escaped);
   plot.legend({{"c1", "moved"}, {"c2", "escaped"}});
   s.figures.push_back({"rounds", "Round by round", plot.svg("particles that moved and escaped in each round"),
-                       "Escaped: to another pose that explains the particle better."});
+                       "Moved: turned by more than 2 degrees. Escaped: found more than 15 degrees away, at a "
+                       "pose that explains the particle better, in the rounds that searched."});
+  Plot score(across, axis_of(held_out, "held-out log likelihood"));
+  score.line("c1", round, held_out), score.dots("c1", round, held_out);
+  s.figures.push_back(
+      {"rounds-score", "What each round gained", score.svg("held-out log likelihood of each round"),
+       "Of localisations that were not fitted, nat each. The average was drawn with a width of " +
+           fixed(width.front(), 2) + " nm in the first round and of " + fixed(width.back(), 2) +
+           " nm in the last."});
 }
 
 void add_time(const RunRecord& record, Section& s) {
@@ -85,16 +96,20 @@ void add_time(const RunRecord& record, Section& s) {
 Section search_section(const Subject& subject) {
   const RunRecord& record = subject.record;
   Section s{"search", "How it was found", {}, {}, {}};
-  s.notes.push_back(counted(static_cast<std::size_t>(std::max(0, record.rounds)), "round") +
+  const int searches = std::max(0, record.rounds);
+  s.notes.push_back(std::to_string(searches) + (searches == 1 ? " search" : " searches") +
+                    " for better poses of all particles" +
+                    (record.history.empty() ? "" : " in " + counted(record.history.size(), "round")) +
                     (record.converged ? ", converged: " : ", not converged: ") + record.stopped_because +
                     ".");
-  s.notes.push_back(
-      record.agreement > 0
-          ? "The two best random starts pose " + percent(record.agreement, 1) +
-                " of the particles alike: two searches from unrelated beginnings came to the same answer, "
-                "and no other start was run."
-          : "No agreement of two random starts is recorded: the structure is symmetric, or the starts "
-            "differed and were judged by localisations that none of them had seen.");
+  if (record.starts.size() > 1)
+    s.notes.push_back(
+        record.agreement > 0
+            ? "The two best starts pose " + percent(record.agreement, 1) +
+                  " of the particles alike, but for one turn that all have in common. Near 100 %: searches "
+                  "from different beginnings came to one answer. A symmetric structure lowers it, since a "
+                  "particle then has several poses that are the same."
+            : "The record does not hold how many particles the best starts pose alike.");
   add_starts(record, s);
   add_rounds(record, s);
   add_time(record, s);

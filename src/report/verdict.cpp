@@ -104,7 +104,9 @@ std::vector<KeyNumber> key_numbers(const RunRecord& record) {
   const std::size_t accepted = accepted_particles(record), all = record.poses.size();
   std::vector<KeyNumber> numbers;
   numbers.push_back({"particles accepted", std::to_string(accepted) + " of " + std::to_string(all),
-                     all ? percent(static_cast<double>(accepted) / static_cast<double>(all)) : ""});
+                     all ? percent(static_cast<double>(accepted) / static_cast<double>(all),
+                                   accepted == all || accepted == 0 ? 0 : 1)
+                         : ""});
   const std::size_t aligned = record.result.superparticle.size();
   std::size_t left = 0;
   for (const PoseRow& p : record.poses) left += p.accepted ? 0 : p.n_localisations;

@@ -72,30 +72,6 @@ Gaussian gaussian(const smlm::LocalisationTable& table, std::size_t row, double 
   return g;
 }
 
-// What drawing needs, covariances as calibrated; the axis of a particle's uncertainties turns with it, so
-// each has its own.
-smlm::LocalisationTable calibrated(const smlm::LocalisationTable& stated, const RenderOptions& o) {
-  smlm::LocalisationTable table;
-  table.position_nm = stated.position_nm;
-  table.covariance_nm2 = stated.covariance_nm2;
-  table.particle = stated.particle;
-  table.particle_names = stated.particle_names;
-  table.planar = stated.planar;
-  NoiseModel noise{o.lateral_factor, o.axial_factor, o.lateral_extra_nm, o.axial_extra_nm, 0, table.planar};
-  std::vector<std::vector<std::size_t>> rows(table.particle_names.size() + 1);
-  for (std::size_t i = 0; i < table.size(); ++i)
-    rows[std::min(rows.size() - 1, static_cast<std::size_t>(table.particle.empty() ? 0 : table.particle[i]))]
-        .push_back(i);
-  for (const auto& own : rows) {
-    View view;
-    for (const std::size_t i : own) view.covariance.push_back(table.covariance_nm2[i]);
-    const Eigen::Vector3f axis = uncertainty_axis(view, table.planar);
-    for (const std::size_t i : own)
-      table.covariance_nm2[i] = effective_covariance(table.covariance_nm2[i], axis, noise);
-  }
-  return table;
-}
-
 // Chooses box and voxel.
 Volume frame(const smlm::LocalisationTable& table, const RenderOptions& o) {
   Volume v;
@@ -190,6 +166,28 @@ Volume drawn(Volume v, const smlm::LocalisationTable& table) {
   return v;
 }
 }  // namespace
+
+smlm::LocalisationTable calibrated(const smlm::LocalisationTable& stated, const RenderOptions& o) {
+  smlm::LocalisationTable table;
+  table.position_nm = stated.position_nm;
+  table.covariance_nm2 = stated.covariance_nm2;
+  table.particle = stated.particle;
+  table.particle_names = stated.particle_names;
+  table.planar = stated.planar;
+  NoiseModel noise{o.lateral_factor, o.axial_factor, o.lateral_extra_nm, o.axial_extra_nm, 0, table.planar};
+  std::vector<std::vector<std::size_t>> rows(table.particle_names.size() + 1);
+  for (std::size_t i = 0; i < table.size(); ++i)
+    rows[std::min(rows.size() - 1, static_cast<std::size_t>(table.particle.empty() ? 0 : table.particle[i]))]
+        .push_back(i);
+  for (const auto& own : rows) {
+    View view;
+    for (const std::size_t i : own) view.covariance.push_back(table.covariance_nm2[i]);
+    const Eigen::Vector3f axis = uncertainty_axis(view, table.planar);
+    for (const std::size_t i : own)
+      table.covariance_nm2[i] = effective_covariance(table.covariance_nm2[i], axis, noise);
+  }
+  return table;
+}
 
 RenderOptions calibrated_rendering(const Calibration& c, double scale_nm) {
   RenderOptions o;

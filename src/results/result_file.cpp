@@ -7,6 +7,7 @@
 #include "smlm/atomic_file.hpp"
 #include "smlm/error.hpp"
 #include "smlm/h5/file.hpp"
+#include "smlm/table_reader.hpp"
 #include "symmetry_record.hpp"
 
 namespace polar {
@@ -209,6 +210,20 @@ void write_rejected(File& file, const Results& r) {
   write_refused(file, r);
 }
 
+void write_rounds(File& file, const std::vector<RoundReport>& rounds, double scale_nm) {
+  std::vector<double> width_nm, moved, escaped, held_out;
+  for (const RoundReport& r : rounds) {
+    width_nm.push_back(scale_nm * r.width);
+    moved.push_back(r.moved), escaped.push_back(r.escaped);
+    held_out.push_back(r.held_out_log_likelihood);
+  }
+  const std::string group = "/run/history/";
+  file.write(group + "width_nm", width_nm);
+  file.write(group + "moved", moved);
+  file.write(group + "escaped", escaped);
+  file.write(group + "held_out_log_likelihood", held_out);
+}
+
 void write_run(File& file, const Results& r) {
   const Registration& g = r.registration;
   file.make_group("/run");
@@ -260,6 +275,7 @@ void write_run(File& file, const Results& r) {
   file.write("/run/starts/gain_std", gain_std);
   file.write("/run/starts/won", won);
   file.write_attribute("/run/starts", "agreement", g.agreement);
+  write_rounds(file, g.history, r.normalisation.scale_nm);
   if (const std::optional<TiltSpread> tilt = tilt_spread(g.view); tilt && !r.planar) {
     file.write_attribute("/run", "tilt_std_deg", tilt->std_deg);
     file.write_attribute("/run", "tilt_particles", static_cast<std::uint64_t>(tilt->particles));
@@ -380,6 +396,12 @@ void write_result_file(const std::string& path, const Results& results,
   if (results.labelled) write_labelling(file, *results.labelled);
   file.close();
   atomic.commit();
+}
+
+bool is_result_file(const std::string& path) {
+  if (!smlm::read_head(path).hdf5) return false;
+  const File file = File::open(path);
+  return file.has_attribute("/", "format") && file.read_string_attribute("/", "format") == kFormat;
 }
 
 ResultRecord read_result_file(const std::string& path) {

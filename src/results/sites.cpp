@@ -202,7 +202,7 @@ DiscreteSites find_sites(const Table& t, const RenderOptions& options) {
   const double sigma = median_sigma_nm(t);
   RenderOptions soft = options;
   soft.channel_column.clear();
-  soft.voxel_nm = sigma / 2;
+  soft.voxel_nm = sigma / std::sqrt(2.0);  // half of the width drawn
   soft.lateral_extra_nm = std::hypot(options.lateral_extra_nm, sigma);
   soft.axial_extra_nm = std::hypot(options.axial_extra_nm, sigma);
   const Volume density = render(t, soft);

@@ -46,6 +46,9 @@ std::vector<std::string> violations(const SimulationOptions& o) {
   check_range(faults, "sigma_y_factor", o.sigma_y_factor, 1e-3, 1e3);
   check_range(faults, "sigma_z_factor", o.sigma_z_factor, 1e-3, 1e3);
   check_choice(faults, "sigma_per", o.sigma_per, {"localisation", "particle"});
+  require(o.radius_std_nm >= 0 && o.radius_std_nm <= kLength_nm, "radius_std_nm must be 0 or more");
+  require(o.height_std_nm >= 0 && o.height_std_nm <= kLength_nm, "height_std_nm must be 0 or more");
+  require(!o.planar || o.height_std_nm == 0, "planar data have no height: height_std_nm must be 0");
   check_range(faults, "visibility", o.visibility, 0.01, 1);
   require(o.outlier_fraction >= 0 && o.outlier_fraction <= 0.95, "outlier_fraction must be 0 to 0.95");
   check_choice(faults, "outliers", o.outliers, {"uniform", "strands"});

@@ -12,7 +12,7 @@ namespace polar::simulation {
 
 namespace {
 // One stream a purpose: more blinks must not change the poses.
-enum Stage : std::uint32_t { kPoseStage = 0x41, kLabelStage, kCropStage, kOutlierStage, kNoiseStage };
+enum Stage : std::uint32_t { kPoseStage = 0x41, kLabelStage, kCropStage, kOutlierStage, kNoiseStage, kShapeStage };
 
 // Strands: a persistent random walk of this many steps, each this share of the radius, turning by this angle.
 constexpr int kStrandSteps = 40;
@@ -20,6 +20,21 @@ constexpr double kStrandStep = 0.05, kStrandTurn_rad = 0.15;
 constexpr int kStrandsPerParticle = 2;
 
 double draw(KeyedRandom& random, const Range& r) { return r[0] + (r[1] - r[0]) * random.uniform(); }
+
+// This copy of the structure: wider and taller than the mean by what it draws.
+Structure draw_shape(Structure s, const SimulationOptions& o, std::uint64_t index, ParticleDraw& particle) {
+  if (o.radius_std_nm <= 0 && o.height_std_nm <= 0) return s;
+  KeyedRandom random(o.seed, index, kShapeStage);
+  particle.radius_change_nm = o.radius_std_nm * random.normal();
+  particle.height_change_nm = o.height_std_nm * random.normal();
+  const double height_nm = s.site_nm.row(2).maxCoeff() - s.site_nm.row(2).minCoeff();
+  for (Eigen::Index k = 0; k < s.site_nm.cols(); ++k) {
+    const double r = s.site_nm.col(k).head<2>().norm();
+    if (r > 0) s.site_nm.col(k).head<2>() *= std::max(0.0, r + particle.radius_change_nm) / r;
+    if (height_nm > 0) s.site_nm(2, k) *= std::max(0.0, height_nm + particle.height_change_nm) / height_nm;
+  }
+  return s;
+}
 
 Pose draw_view_from_structure(const SimulationOptions& o, std::uint64_t index) {
   KeyedRandom random(o.seed, index, kPoseStage);
@@ -166,8 +181,9 @@ void localise(const std::vector<Eigen::Vector3d>& truth_nm, const SimulationOpti
 }
 }  // namespace
 
-ParticleDraw draw_particle(const Structure& s, const SimulationOptions& o, std::uint64_t index) {
+ParticleDraw draw_particle(const Structure& mean, const SimulationOptions& o, std::uint64_t index) {
   ParticleDraw particle;
+  const Structure s = draw_shape(mean, o, index, particle);
   particle.structure_from_view = draw_view_from_structure(o, index).inverse();
   KeyedRandom random(o.seed, index, kLabelStage);
   std::vector<Eigen::Vector3d> truth_nm;

@@ -10,6 +10,7 @@ namespace polar::simulation {
 struct ParticleDraw {
   Pose structure_from_view;
   double visibility = 1;
+  double radius_change_nm = 0, height_change_nm = 0;
   Eigen::Matrix3Xd visible_site_nm;          // structure frame, what the crop left
   std::vector<Eigen::Vector3d> position_nm;  // table frame, noise included; structure first, outliers after
   std::vector<smlm::Covariance> covariance_nm2;

@@ -79,6 +79,8 @@ Simulation simulate(const Structure& structure, const SimulationOptions& o) {
     drawn[i] = simulation::draw_particle(s, o, i);
     out.particle[i].structure_from_view = drawn[i].structure_from_view;
     out.particle[i].visibility = drawn[i].visibility;
+    out.particle[i].radius_change_nm = drawn[i].radius_change_nm;
+    out.particle[i].height_change_nm = drawn[i].height_change_nm;
     if (o.cramer_rao) out.particle[i].covariance = bound(drawn[i], o, s.radius_nm(), i);
   });
   for (std::size_t i = 0; i < n; ++i) {

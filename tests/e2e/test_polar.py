@@ -379,7 +379,8 @@ class KnownBeforehand(PolarCase):
 
     def test_initial_poses(self):
         poses = self.data / "poses.csv"
-        self.ok("run", self.config, "--set", f"registration.initial_poses={poses}")
+        said = self.ok("run", self.config, "--set", f"registration.initial_poses={poses}")
+        self.assertIn("start        the poses of registration.initial_poses", said)
         self.assertGreaterEqual(self.recall("results", poses, 10)[0], 0.9)
         lines = poses.read_text().splitlines(keepends=True)
         fewer = self.write("fewer.csv", "".join(lines[:-2]))

@@ -82,7 +82,7 @@ class Report(PolarCase):
         figures = self.look_at_all(page)
         for present in ("projection-xy", "projection-xz", "projection-yz", "slice-xy", "turntable", "fsc", "sphere", "tilt",
                         "in-plane", "log-likelihood", "rotation-std", "translation-std", "gallery-1", "localisations",
-                        "calibration", "residual-lateral", "residual-axial", "starts", "time"):
+                        "calibration", "residual-lateral", "residual-axial", "starts", "rounds", "rounds-score", "time"):
             self.assertEqual(figures[present]["state"], "present", present)
         with self.subTest("the table searches and sorts"):
             rows = "document.querySelectorAll('#particle-table tbody tr').length"

@@ -10,10 +10,11 @@ set(below_fusion smlm core flames)
 set(below_registration smlm core flames model latent fusion)
 set(below_simulation ${below_registration} registration)
 set(below_results ${below_simulation} simulation)
-set(below_report ${below_results} results)
+set(below_fitting ${below_results} results)
+set(below_report ${below_fitting} fitting)
 set(below_pipeline ${below_report} report)
 set(below_cli ${below_pipeline} pipeline)
-set(layers smlm core flames model latent fusion registration simulation results report pipeline cli)
+set(layers smlm core flames model latent fusion registration simulation results fitting report pipeline cli)
 
 # Library header -> the place (a pattern) that alone may include it.
 set(homes
@@ -21,7 +22,7 @@ set(homes
   "openssl/=src/core/sha256"
   "Random123/=src/core/rng"
   "nanoflann=src/flames/"
-  "ceres/=src/fusion/"
+  "ceres/=src/(fusion|fitting)/"
   "yaml-cpp/=src/pipeline/config/parse"
   "hdf5=smlm/src/h5/"
   "matio=smlm/src/"

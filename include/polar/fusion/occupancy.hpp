@@ -20,6 +20,10 @@ std::vector<std::vector<float>> occupancy(const Mixture& mixture, const FusionDa
                                           const std::vector<Pose>& template_from_view, double strength,
                                           double reach);
 
+/// n_ik, the localisations of view i that are expected to be of centre k; none of a view without any.
+std::vector<std::vector<double>> attributed(const Mixture& mixture, const FusionData& data,
+                                            const std::vector<Pose>& template_from_view);
+
 /// The strength under which the views' counts of centres, pooled in the same way, are likeliest: evidence of
 /// the Dirichlet-multinomial, no localisation needs to be held out. Infinite where every view shows the
 /// template as it is, up to chance.

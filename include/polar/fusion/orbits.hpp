@@ -11,6 +11,9 @@ namespace polar {
 
 using RotationGroup = std::vector<Eigen::Matrix3d>;  // closed, the identity first
 
+/// Angle between two rotations template_from_view, the nearest of their images.
+double angle_modulo(const RotationGroup& group, const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
+
 /// A point nearer than `distance` to axes of the group, moved onto them: it has fewer images than the group
 /// elements.
 Eigen::Vector3d onto_axes(Eigen::Vector3d x, const RotationGroup& group, double distance);

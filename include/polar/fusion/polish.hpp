@@ -32,4 +32,8 @@ std::vector<PolishedPose> polish(const Mixture& mixture, const FusionData& data,
                                  const std::vector<Pose>& template_from_view,
                                  const std::vector<std::vector<int>>& burst = {});
 
+/// The poses alone, at half the cost.
+std::vector<Pose> polished_poses(const Mixture& mixture, const FusionData& data,
+                                 const std::vector<Pose>& template_from_view);
+
 }  // namespace polar

@@ -31,10 +31,12 @@ struct AnnealOptions {
   int most_judging = 80;          // of a view that judge it; chosen
   int folds = 4;                  // of the views: one is judged under the density of the others; chosen
   double unit_share = 0.5;        // of them that one asymmetric unit of a group keeps at least; measured
-  int most_rotations = 60000;     // of a grid that a prior thins; chosen
+  double prior_share = 0.25;      // of them that registration.tilt_deg keeps at least; measured
+  int most_rotations = 60000;     // of a grid that a prior or a group thins; chosen
   int first_localisations = 64;   // in the first half of the sweeps; measured
   double promising_share = 0.08;  // of the rotations whose shift is improved; measured
   double shift = 0.1;             // standard deviation of the prior of shifts; measured
+  double shift_of_label = 0.5;    // what one label adds to it, over the root of the labels of a view; chosen
   int samples = 16;               // of a pose posterior; measured
   int jitters = 8;                // Metropolis steps of a sample; measured
   int last_sweeps = 3;            // over all views, when those that competed have a template; measured
@@ -78,9 +80,10 @@ struct SymmetryOptions {
   double first_width = 0.09, first_beta = 0.35, narrowing = 0.6;  // of a trial; measured
   int draws = 4;                     // of what judges a trial; measured: one does not tell 8 from 7
   double means_standard_errors = 4;  // that a group may cost as a means, before it is tested; chosen
-  double means_loss = 0.25;    // and nat a localisation that it may cost at all; measured: pores .05 to .15
-  int relabellings = 2;        // tries to tell the images of a unit apart; chosen
-  int relabelling_sweeps = 8;  // chosen
+  double means_loss = 0.25;      // and nat a localisation that it may cost at all; measured: pores .05 to .15
+  int relabellings = 8;          // tries to tell the images of a unit apart; chosen
+  int relabelling_sweeps = 30;   // of one such try; chosen
+  double relabelling_views = 4;  // as if seen spread evenly over the template; chosen
 };
 
 /// When a pose and a template are believed.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "polar/core/pose_prior.hpp"
 #include "polar/core/progress.hpp"
 #include "polar/core/view.hpp"
 #include "polar/latent/options.hpp"
@@ -37,6 +38,9 @@ struct RegistrationOptions {
 
 /// One sentence per fault, empty when the options can be used.
 std::vector<std::string> violations(const RegistrationOptions& options);
+
+/// What is known of orientations beforehand.
+PosePrior prior_of(const RegistrationOptions& options);
 
 /// Whether `start` is among those that compete.
 bool wants(const RegistrationOptions& options, const std::string& start);

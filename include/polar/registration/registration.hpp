@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +53,14 @@ struct StartReport {
   bool won = false;
 };
 
+/// One round of the refinement: a search where there was one, then template and poses in turn.
+struct RoundReport {
+  double width = 0;                    // of the template, length
+  int moved = 0;                       // views that the round turned by more than 2 degrees
+  double escaped = NAN;                // views that its search moved by more than 15 degrees; NaN: no search
+  double held_out_log_likelihood = 0;  // as of a start
+};
+
 /// What a registration says of itself.
 enum class Verdict { none, ambiguous, found };
 std::string to_string(Verdict verdict);
@@ -60,7 +69,7 @@ std::string to_string(Verdict verdict);
 struct OtherTemplate {
   std::string group;  // C1: none
   FusedTemplate fused;
-  double gain = 0, gain_std = 0;  // held-out log density per localisation over the result's; negative
+  double gain = 0, gain_std = 0;  // of views that other views predict, nat a label over the result
 };
 
 struct Registration {
@@ -76,6 +85,7 @@ struct Registration {
   double structure_gain = 0, structure_gain_std = 0;
   std::optional<OtherTemplate> other;  // where a symmetry was found or imposed
   std::optional<Symmetry> symmetry;    // where it is asked for
+  std::vector<RoundReport> history;    // of the rounds that led to the result, and the last search
   int rounds = 0;
   bool converged = false;
   std::string stopped_because = "never ran";

@@ -47,8 +47,9 @@ struct StartRecord {
 
 /// One round of the registration.
 struct RoundRecord {
+  double width_nm = PoseRow::kNone;                         // of the template
   double moved = PoseRow::kNone, escaped = PoseRow::kNone;  // particles
-  double log_likelihood = PoseRow::kNone;
+  double held_out = PoseRow::kNone;                         // nat a localisation
 };
 
 struct SymmetryRecord {

@@ -40,6 +40,9 @@ struct Volume {
 /// Options that draw a result with its own calibration.
 RenderOptions calibrated_rendering(const Calibration& calibration, double scale_nm);
 
+/// What drawing and fitting need of a table, covariances as calibrated about the axis of each particle's own.
+smlm::LocalisationTable calibrated(const smlm::LocalisationTable& stated, const RenderOptions& options);
+
 /// Renders into a box that holds all but the farthest 0.1 % of the localisations on every side, and their
 /// spread. The same bits for any number of threads. An empty table gives one empty voxel.
 Volume render(const smlm::LocalisationTable& table, const RenderOptions& options = {});

@@ -23,6 +23,9 @@ struct ResultRecord {
 void write_result_file(const std::string& path, const Results& results,
                        const smlm::LocalisationTable& superparticle);
 
+/// Whether a file is a record, and not a localisation table.
+bool is_result_file(const std::string& path);
+
 /// Reads a record. Throws smlm::Error (input) for a file that is none, or of a later format.
 ResultRecord read_result_file(const std::string& path);
 

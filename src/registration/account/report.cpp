@@ -14,8 +14,6 @@ namespace polar {
 
 namespace {
 
-constexpr int kPolishRounds = 2;  // of least squares and one step of the template between them
-
 // Of the poses at this mode against one at least 15 degrees away, tempered as the bursts ask: a likelihood
 // that counts the blinks of one label as many says as little as one of them.
 double posterior_share(double margin, double localisations, double temper) {
@@ -54,19 +52,18 @@ void report_views(const Problem& problem, const EngineOptions& options, Fit& fit
                                        problem.shuffled[i], options.evidence.burst_distance);
     for (const std::uint32_t j : problem.shuffled[i]) burst[i].push_back(of[j]);  // in the order of the data
   });
-  std::vector<PolishedPose> polished;
-  for (int round = 0; round < kPolishRounds; ++round) {
-    show(fit, fit.mixture, data);
-    polished = polish(fit.mixture, data, fit.pose, burst);
-    for (std::size_t i = 0; i < polished.size(); ++i) fit.pose[i] = polished[i].template_from_view;
-    if (round + 1 == kPolishRounds) break;
-    MaximisationOptions em;
-    em.free_weights = true;
-    em.support = problem.crowded || !fit.group.empty();
-    em.weakest_share = 0;
-    em.group = fit.group;
-    maximise(fit.mixture, data, fit.pose, em);
-  }
+  // Least squares, one step of the template, and least squares again.
+  show(fit, fit.mixture, data);
+  fit.pose = polished_poses(fit.mixture, data, fit.pose);
+  MaximisationOptions em;
+  em.free_weights = true;
+  em.support = problem.crowded || !fit.group.empty();
+  em.weakest_share = 0;
+  em.group = fit.group;
+  maximise(fit.mixture, data, fit.pose, em);
+  show(fit, fit.mixture, data);
+  const std::vector<PolishedPose> polished = polish(fit.mixture, data, fit.pose, burst);
+  for (std::size_t i = 0; i < polished.size(); ++i) fit.pose[i] = polished[i].template_from_view;
   out.view.resize(problem.size());
   for (std::size_t i = 0; i < problem.size(); ++i) {
     RegisteredView& v = out.view[i];

@@ -1,6 +1,7 @@
 #include "verdict.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "../data/template_tools.hpp"
@@ -32,8 +33,11 @@ void judge_registration(const Evidence& cloud, const Evidence& evidence, const V
   if (!c.better_by(options.doubtful_standard_errors)) {
     out.verdict = Verdict::none;
     out.verdict_reason = text(
-        "no structure: localisations kept apart are explained by %.3f +- %.3f nat better than by a cloud",
-        c.gain, c.standard_error);
+        c.gain > 0
+            ? "no structure: localisations kept apart are explained by no more than %.3f +- %.3f nat better "
+              "than by a cloud"
+            : "no structure: a cloud explains localisations kept apart by %.3f +- %.3f nat better",
+        std::abs(c.gain), c.standard_error);
     for (RegisteredView& v : out.view) {
       if (v.n_used < kFewestLocalisations) continue;  // it has a reason of its own
       v.accepted = false;

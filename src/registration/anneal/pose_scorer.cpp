@@ -36,8 +36,7 @@ float Scorer::operator()(const SoftPose& pose) const {
 }
 
 float Scorer::tilt_of(const Eigen::Matrix3f& rotation) const {
-  const float z = prior_.flip ? std::abs(rotation(2, 2)) : rotation(2, 2);
-  return std::acos(std::clamp(z, -1.0f, 1.0f));
+  return std::acos(std::clamp(prior_.uprightness(rotation), -1.0f, 1.0f));
 }
 
 float climb(const Scorer& scorer, const Eigen::Vector3f& centre, float turn, float shift, int levels,

@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::uint32_t kStartStage = 21, kGridStage = 23, kPoseStage = 24;
 constexpr std::size_t kDepositViews = 64;  // of one block of counts
-constexpr double kTiltReach = 2.6;         // standard deviations of the tilt prior that are searched
 
 double geometric(double first, double last, double t) { return first * std::pow(last / first, t); }
 
@@ -74,10 +73,6 @@ std::vector<SoftPose> soft_poses_of(const std::vector<Pose>& pose) {
   return out;
 }
 
-PosePrior prior_of(const RegistrationOptions& options) {
-  return {options.tilt_deg * kRadiansPerDegree, options.flip};
-}
-
 AnnealStage growth_stage(const EngineOptions& options) {
   const ProposalOptions& p = options.proposals;
   const AnnealOptions& a = options.anneal;
@@ -97,7 +92,13 @@ SoftAnnealer::SoftAnnealer(const Problem& problem, std::vector<int> which, const
       options_(options),
       prior_(prior),
       frame_(options.reach, problem.planar() ? options.planar_voxel : options.voxel, problem.planar()),
-      all_(points_of(problem.sampled, options.most_localisations)) {}
+      all_(points_of(problem.sampled, options.most_localisations)) {
+  // The centroid of few labels lies anywhere about that of the structure.
+  for (const std::vector<int>& burst : problem.burst) {
+    const int labels = burst.empty() ? 1 : 1 + *std::max_element(burst.begin(), burst.end());
+    shift_.push_back(std::hypot(options.shift, options.shift_of_label / std::sqrt(labels)));
+  }
+}
 
 SoftAnnealer::Points SoftAnnealer::points_of(const Subsets& subsets, int most) const {
   Points out(problem_.size());
@@ -113,7 +114,6 @@ SoftState SoftAnnealer::random_start(std::uint64_t key) const {
   state.outlier_fraction = options_.first_outlier_fraction;
   state.sample.resize(problem_.size());
   state.best.resize(problem_.size());
-  const double lowest = prior_.tilt_rad > 0 ? std::cos(std::min(1.5, 2 * prior_.tilt_rad)) : -1;
   for (const int v : which_) {
     const auto i = static_cast<std::size_t>(v);
     if (all_[i].count == 0) continue;
@@ -124,7 +124,7 @@ SoftState SoftAnnealer::random_start(std::uint64_t key) const {
         r = so3_exp({0, 0, kTwoPi * random.uniform()});
       } else {
         do r = random.rotation();
-        while ((prior_.flip ? std::abs(r(2, 2)) : r(2, 2)) < lowest);
+        while (!prior_.allows(r));
       }
       state.sample[i].push_back({r.cast<float>(), Eigen::Vector3f::Zero()});
     }
@@ -195,7 +195,7 @@ struct SoftAnnealer::Looked {
   const LogVolume& volume;
   const std::vector<SoftPose>& last;  // samples of the last sweep
   Eigen::Vector3f centre;
-  double beta;
+  double beta, shift;  // standard deviation of the prior of shifts
 };
 
 std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
@@ -204,8 +204,8 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
   const bool planar = problem_.planar();
   const double beta = view.beta, prior_weight = 1 / std::max(beta, 0.02);
   const Eigen::Vector3f& centre = view.centre;
-  const Scorer score(view.volume, view.few, prior_, centre, options_.shift, prior_weight);
-  const Scorer coarse(view.volume, view.fewer, prior_, centre, options_.shift,
+  const Scorer score(view.volume, view.few, prior_, centre, view.shift, prior_weight);
+  const Scorer coarse(view.volume, view.fewer, prior_, centre, view.shift,
                       prior_weight * view.fewer.count / std::max(1, view.few.count));
   const std::size_t n = grid.size();
   std::vector<float> rough(n);
@@ -222,19 +222,18 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
                    better);
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising));
   std::vector<Draw> found(promising);
-  const auto step = static_cast<float>(options_.shift);
+  const auto first = static_cast<float>(view.shift), step = static_cast<float>(options_.shift);
   for (std::size_t k = 0; k < promising; ++k) {
     Draw& d = found[k];
     d.pose = {grid[order[k]], centre};
     d.score = score(d.pose);
-    for (int ring = 1; ring <= 2; ++ring) {
+    for (float ring = first; ring > 0.4f * step; ring *= 0.5f) {
       const Eigen::Vector3f from = d.pose.translation;
       Eigen::Vector3f there[6];
       float at[6];
       int m = 0;
       for (int a = 0; a < (planar ? 2 : 3); ++a)
-        for (const float sign : {-1.0f, 1.0f})
-          there[m++] = from + sign * step / static_cast<float>(ring) * Eigen::Vector3f::Unit(a);
+        for (const float sign : {-1.0f, 1.0f}) there[m++] = from + sign * ring * Eigen::Vector3f::Unit(a);
       score(d.pose.rotation, there, static_cast<std::size_t>(m), at);
       for (int s = 0; s < m; ++s)
         if (at[s] > d.score) d.score = at[s], d.pose.translation = there[s];
@@ -285,20 +284,18 @@ void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& whic
     spacing = kTwoPi / options_.planar_rotations;
     for (int i = 0; i < n; ++i) grid.push_back(so3_exp({0, 0, spacing * (i + first)}).cast<float>());
   } else {
-    // Rotations that a prior or a group leaves out are spent on the others.
-    double share = 1;
-    const double lowest = prior_.tilt_rad > 0 ? std::cos(std::min(1.5, kTiltReach * prior_.tilt_rad)) : -1;
-    if (prior_.tilt_rad > 0) share = (1 - lowest) / 2 * (prior_.flip ? 2 : 1);
+    // Some of the rotations that a prior or a group leaves out are spent on the others.
     const auto order = static_cast<double>(std::max<std::size_t>(1, state.group.size()));
     const int whole =
         std::min(options_.most_rotations,
-                 static_cast<int>(sweep.rotations / share * std::max(1.0, order * options_.unit_share)));
+                 static_cast<int>(sweep.rotations * std::max(1.0, options_.prior_share / prior_.share()) *
+                                  std::max(1.0, order * options_.unit_share)));
     const Eigen::Matrix3f turn = turns.rotation().cast<float>();
     for (const Eigen::Quaternionf& q : super_fibonacci(whole)) {
       const Eigen::Matrix3f r = q.toRotationMatrix() * turn;
-      const float z = prior_.flip ? std::abs(r(2, 2)) : r(2, 2);
-      if (static_cast<double>(z) >= lowest && in_asymmetric_unit(state.group, r)) grid.push_back(r);
+      if (prior_.allows(r) && in_asymmetric_unit(state.group, r)) grid.push_back(r);
     }
+    if (grid.empty()) grid.push_back(Eigen::Matrix3f::Identity());  // of a narrow prior and a large group
     spacing = 0.5 * std::cbrt(8 * kPi * kPi / whole);
   }
   const LogVolume volume(state.density, state.outlier_fraction, outlier_density(planar));
@@ -317,7 +314,7 @@ void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& whic
     const LookupPoints few = some_of(all, static_cast<std::size_t>(sweep.localisations), random);
     const LookupPoints fewer = first_of(few, std::max(std::min(few.count, 24), few.count / 2));
     const double b = sweep.beta * all.count / few.count;  // the few stand for all
-    const Looked view{few, fewer, volume, state.sample[i], centre, b};
+    const Looked view{few, fewer, volume, state.sample[i], centre, b, shift_[i]};
     const std::vector<Draw> found = candidates(view, grid, spacing, random);
     double total = 0;
     const Draw* likeliest = &found.front();
@@ -325,7 +322,7 @@ void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& whic
       total += d.weight;
       if (d.score > likeliest->score) likeliest = &d;
     }
-    const Scorer score(volume, few, prior_, centre, options_.shift, 1 / std::max(b, 0.02));
+    const Scorer score(volume, few, prior_, centre, shift_[i], 1 / std::max(b, 0.02));
     const double turn = std::min(spacing, options_.jitter_turn / std::sqrt(std::max(b, 0.02)));
     const double shift = std::min(0.08, options_.jitter_shift / std::sqrt(std::max(b, 0.02)));
     const int samples = options_.samples;

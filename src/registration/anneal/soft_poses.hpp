@@ -8,6 +8,7 @@
 
 #include "../data/evidence.hpp"
 #include "../data/problem.hpp"
+#include "polar/core/pose_prior.hpp"
 #include "polar/core/rng.hpp"
 #include "polar/fusion/density_grid.hpp"
 #include "polar/fusion/orbits.hpp"
@@ -22,14 +23,6 @@ struct SoftPose {
 };
 
 std::vector<SoftPose> soft_poses_of(const std::vector<Pose>& pose);
-
-/// Which orientations are possible at all; part of every posterior.
-struct PosePrior {
-  double tilt_rad = 0;  // standard deviation of a view's z from the template's; 0: any orientation
-  bool flip = false;    // either way up
-};
-
-PosePrior prior_of(const RegistrationOptions& options);
 
 struct SoftState {
   std::vector<std::vector<SoftPose>> sample;  // of every view of the problem; empty: takes no part
@@ -104,6 +97,7 @@ class SoftAnnealer {
   PosePrior prior_;
   VoxelFrame frame_;
   Points all_;
+  std::vector<double> shift_;  // of every view of the problem: standard deviation of its centre
 };
 
 }  // namespace polar

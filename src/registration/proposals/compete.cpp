@@ -109,6 +109,10 @@ class Contest {
     if (entered_.size() < 2) return false;
     return agreement() >= options_.engine.proposals.agreeing_share || !clearly_;
   }
+  /// Whether independent starts pose the views alike: nothing else is worth trying.
+  bool settled() const { return independent_ >= options_.engine.proposals.agreeing_share; }
+  /// To be called as long as no start comes from another one.
+  void note_agreement() { independent_ = agreement(); }
   double agreement() const {
     if (entered_.size() < 2) return 0;
     return share_alike(entered_[best_].state.best, entered_[second_].state.best, which_,
@@ -117,7 +121,7 @@ class Contest {
   bool last_won() const { return won_; }
 
   Competition result() {
-    Competition out{entered_[best_].state, entered_[best_].crowded, {}, agreement(), true};
+    Competition out{entered_[best_].state, entered_[best_].crowded, {}, independent_, true};
     entered_[best_].report.won = true;
     for (const Hypothesis& h : entered_) out.report.push_back(h.report);
     if (wants(options_, "template"))
@@ -142,6 +146,7 @@ class Contest {
   std::vector<Hypothesis> entered_;
   std::size_t best_ = 0, second_ = 0;
   bool won_ = true, clearly_ = true;
+  double independent_ = 0;
 };
 
 }  // namespace
@@ -194,7 +199,8 @@ Competition compete(const Problems& problems, const Autoencoder* model, const Re
     // They are asked for where random starts do not agree.
     if (!contest.agreed() && !posed_starts()) return cancelled;
   }
-  for (int k = 1, rejected = 0; k <= o.most_proposals && rejected < o.rejected; ++k) {
+  contest.note_agreement();
+  for (int k = 1, rejected = 0; k <= o.most_proposals && rejected < o.rejected && !contest.settled(); ++k) {
     if (!step(contest.regrown(k))) return cancelled;
     rejected = contest.last_won() ? 0 : rejected + 1;
   }

@@ -19,6 +19,7 @@ namespace {
 constexpr std::uint32_t kTurnStage = 31, kCloudStage = 33;
 // Of a template turned any way: its shells err by a few per cent.
 constexpr Eigen::Index kCloudCentres = 12000;
+constexpr double kMoved = 2 * kRadiansPerDegree;
 constexpr double kPooled = 2;      // spreads of a centre, within which a view tells centres apart no better
 constexpr int kJudgingSweeps = 2;  // without the held-out localisations, before they judge
 
@@ -81,10 +82,6 @@ void Refiner::sweep(Fit& fit, int sweeps) const {
   sweep(first_of(problem_.sampled, static_cast<std::size_t>(options_.localisations)), fit, sweeps);
 }
 
-void Refiner::sweep_blind(Fit& fit, int sweeps) const {
-  sweep(first_of(problem_.fitted, static_cast<std::size_t>(options_.localisations)), fit, sweeps, false);
-}
-
 void Refiner::search(Fit& fit) const { search(problem_.sampled, fit); }
 
 void Refiner::search(const Subsets& subsets, Fit& fit) const {
@@ -99,8 +96,9 @@ void Refiner::search(const Subsets& subsets, Fit& fit) const {
       static_cast<float>(problem_.planar() ? options_.planar_shift : options_.shift), problem_.planar());
   o.grid.promising = options_.promising;
   o.grid.step = static_cast<float>(options_.step);
-  const Eigen::Matrix3f turn = grid_turn(
-      problem_.planar(), KeyedRandom(problem_.seed, static_cast<std::uint64_t>(fit.rounds), kTurnStage));
+  const Eigen::Matrix3f turn =
+      grid_turn(problem_.planar(),
+                KeyedRandom(problem_.seed, static_cast<std::uint64_t>(fit.rounds), kTurnStage), grid_.prior);
   SearchAgainReport report =
       search_again(problem_.views, problem_.axes, subsets, fit.mixture, noise, grid_, turn, o, fit.pose);
   fit.margin = std::move(report.margin);
@@ -108,7 +106,6 @@ void Refiner::search(const Subsets& subsets, Fit& fit) const {
   ++fit.rounds;
 }
 
-// Fitted again without the held-out localisations.
 Fit Refiner::blind(Fit fit) const {
   // A label that judges is missing in what was fitted.
   fit.occupancy = std::numeric_limits<double>::infinity();
@@ -123,8 +120,6 @@ Evidence Refiner::held_out(const Fit& fit) const {
     if (problem_.held_out[i].empty()) evidence[i] = NAN;
   return evidence;
 }
-
-Evidence Refiner::judge(const Fit& fit) const { return held_out(blind(fit)); }
 
 Refiner::AgainstCloud Refiner::judge_against_cloud(Fit fit) const {
   // A structure that is there shows at the first width already; the last one is as fine as all views allow.
@@ -159,9 +154,11 @@ Fit Refiner::rounds(Fit fit, Progress& progress) const {
   Fit best = fit;
   bool searching = true;
   for (int round = 0; round < total && !progress.cancelled(); ++round) {
+    const std::vector<Pose> before = fit.pose;
+    const bool searched = searching && round < options_.most_searches;
     fit.noise.width =
         std::max(options_.last_width, options_.first_width * std::pow(options_.narrowing, round));
-    if (searching && round < options_.most_searches) {
+    if (searched) {
       search(fit);
       searching = round == 0 || fit.escaped > options_.settled * static_cast<double>(problem_.size());
     }
@@ -173,14 +170,34 @@ Fit Refiner::rounds(Fit fit, Progress& progress) const {
     } else {
       sweep(fit, options_.sweeps);
     }
-    fit.evidence = judge(fit);
+    judge_round(before, searched, fit);
     progress.step("registering", round + 1, total);
     if (round == 0 || compare(best.evidence, fit.evidence).better_by(0))
       best = fit;
     else if (!searching)
       break;
   }
+  best.history = std::move(fit.history);  // also of what came after and was no better
   return best;
+}
+
+Fit Refiner::last_round(Fit fit) const {
+  const std::vector<Pose> before = fit.pose;
+  search(fit);
+  sweep(fit, options_.sweeps);
+  judge_round(before, true, fit);
+  return fit;
+}
+
+void Refiner::judge_round(const std::vector<Pose>& before, bool searched, Fit& fit) const {
+  fit.evidence = judge(fit);
+  RoundReport report;
+  report.width = spread(fit.noise);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    report.moved += angle_modulo(fit.group, before[i].rotation, fit.pose[i].rotation) > kMoved;
+  if (searched) report.escaped = fit.escaped;
+  report.held_out_log_likelihood = mean_evidence(fit.evidence);
+  fit.history.push_back(report);
 }
 
 Fit Refiner::narrowed(Fit fit) const {

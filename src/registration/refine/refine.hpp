@@ -12,6 +12,7 @@
 #include "polar/flames/search_grid.hpp"
 #include "polar/fusion/maximisation.hpp"
 #include "polar/fusion/mixture.hpp"
+#include "polar/registration/registration.hpp"
 
 namespace polar {
 
@@ -23,6 +24,7 @@ struct Fit {
   std::vector<double> margin;                                  // of the last search
   double occupancy = std::numeric_limits<double>::infinity();  // strength (polar/fusion/occupancy.hpp)
   Evidence evidence;                                           // of all views, at this width and noise
+  std::vector<RoundReport> history;
   int rounds = 0;
   int escaped = 0;  // views that moved far in the last search
 };
@@ -47,6 +49,8 @@ class Refiner {
   }
   /// Rounds until nothing is gained; keeps the best.
   Fit rounds(Fit fit, Progress& progress) const;
+  /// One more, at the width that was reached.
+  Fit last_round(Fit fit) const;
   /// Narrower, without a search, as long as evidence gains.
   Fit narrowed(Fit fit) const;
   /// Stated uncertainties times what evidence asks for, the template fitted again under each proposal.
@@ -59,10 +63,11 @@ class Refiner {
   void search(Fit& fit) const;
   /// Template and poses on all localisations.
   void sweep(Fit& fit, int sweeps) const;
-  /// The template alone, without the held-out localisations, poses as they are.
-  void sweep_blind(Fit& fit, int sweeps) const;
-  /// Of the template and poses fitted again without the held-out localisations.
-  Evidence judge(const Fit& fit) const;
+  /// Template and poses fitted again without the held-out localisations.
+  Fit blind(Fit fit) const;
+  /// Of a fit that is blind to them.
+  Evidence held_out(const Fit& fit) const;
+  Evidence judge(const Fit& fit) const { return held_out(blind(fit)); }
   /// The same with every pose searched for anew, so that nothing of the held-out localisations is left in it,
   /// and beside it under the cloud that is left of the template when it is turned any way about its centre:
   /// what an average explains that has no orientation.
@@ -72,9 +77,8 @@ class Refiner {
   AgainstCloud judge_against_cloud(Fit fit) const;
 
  private:
-  Fit blind(Fit fit) const;
+  void judge_round(const std::vector<Pose>& before, bool searched, Fit& fit) const;
   void search(const Subsets& subsets, Fit& fit) const;
-  Evidence held_out(const Fit& fit) const;
   void sweep(const Subsets& subsets, Fit& fit, int sweeps, bool poses = true) const;
 
   const Problem& problem_;

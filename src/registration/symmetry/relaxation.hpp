@@ -1,5 +1,5 @@
 // A symmetry found is a claim to be tested: is the average without it better? Under the group every view has
-// as many poses as the group elements; each view chooses among these images, and the template follows.
+// as many poses as the group elements; each view chooses among these images, and the labels follow.
 #pragma once
 
 #include "../refine/refine.hpp"
@@ -7,8 +7,11 @@
 
 namespace polar {
 
-/// The best of a few tries to do without the group of `symmetric`, at its noise and width; no new search.
-Fit relaxed(const Problem& problem, const Refiner& refiner, const EngineOptions& options,
-            const Fit& symmetric);
+struct Relaxation {
+  Fit fit;          // without the group: each view at its likeliest image, weights as labels are seen there
+  Comparison gain;  // over the symmetric one, nat a label: views judged by what other views say
+};
+
+Relaxation relaxed(const Problem& problem, const EngineOptions& options, const Fit& symmetric);
 
 }  // namespace polar

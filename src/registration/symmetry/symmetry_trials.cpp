@@ -114,6 +114,17 @@ class Trials {
     return annealed(group, f.similarity, std::move(state), key);
   }
 
+  /// Random poses under the group: where labels are few and missing, a template without it has too few sites
+  /// to hint at it.
+  Trial from_nothing(const std::string& group, std::uint64_t key) {
+    const AnnealOptions& a = options_.anneal;
+    SoftState state = annealer_.random_start(key);
+    state.group = rotations_of(group);
+    annealer_.anneal({a.sweeps, a.first_width, a.last_width, a.first_beta, a.last_beta, a.narrowing, true},
+                     key, state);
+    return judged(group, 0, std::move(state), key);
+  }
+
  private:
   AnnealStage stage(int sweeps) const {
     const AnnealOptions& a = options_.anneal;
@@ -127,9 +138,18 @@ class Trials {
   Trial annealed(const std::string& group, double similarity, SoftState state, std::uint64_t key) {
     state.group = rotations_of(group);
     annealer_.anneal(stage(o_.sweeps), key, state);
-    Evidence evidence =
-        over_draws(options_.evidence, o_.draws, drawn_, [&] { return annealer_.judge(state, key, drawn_); });
-    return {group, similarity, std::move(state), std::move(evidence)};
+    return judged(group, similarity, std::move(state), key);
+  }
+  Trial judged(const std::string& group, double similarity, SoftState state, std::uint64_t key) {
+    std::vector<Evidence> drawn;
+    for (int d = 0; d < o_.draws; ++d) {
+      hold_out(options_.evidence, static_cast<std::uint64_t>(d), drawn_);
+      drawn.push_back(annealer_.judge(state, key, drawn_));
+      if (plain_.size() <= static_cast<std::size_t>(d)) plain_.push_back(drawn.back());  // C1 is the first
+      const Comparison c = compare(mean_over({plain_.begin(), plain_.begin() + d + 1}), mean_over(drawn));
+      if (c.gain < -o_.means_standard_errors * c.standard_error) break;  // other draws would not make it free
+    }
+    return {group, similarity, std::move(state), mean_over(drawn)};
   }
 
   const Problem& problem_;
@@ -138,7 +158,8 @@ class Trials {
   SoftAnnealer annealer_;
   SoftState coarse_;
   SelfSimilarity similarity_;
-  Problem drawn_;  // the problem, other bursts held out
+  Problem drawn_;                // the problem, other bursts held out
+  std::vector<Evidence> plain_;  // of C1 by every draw
 };
 
 std::size_t best_of(const std::vector<Trial>& trials) {
@@ -159,16 +180,18 @@ bool contains(const std::string& outer, const std::string& inner) {
 }
 
 // Whether it costs no more against the best than the error of the evidence.
-bool is_free(const Trial& trial, const Trial& best, const EngineOptions& options) {
-  // That a structure is symmetric at all is tested again on the exact template, so it may cost more here.
-  const double tolerance =
-      best.group == "C1" ? options.symmetry.means_standard_errors : options.evidence.standard_errors;
+bool is_free(const Trial& trial, const Trial& best, const EngineOptions& options, bool posed) {
+  // That a structure is symmetric at all is tested again on the exact template, so it may cost more here,
+  // unless poses are known without it.
+  const double tolerance = best.group != "C1" ? options.evidence.standard_errors
+                           : posed            ? 0
+                                              : options.symmetry.means_standard_errors;
   const Comparison c = compare(best.evidence, trial.evidence);
   return c.better_by(-tolerance) && c.gain > -options.symmetry.means_loss;
 }
 
 // The best one, and what contains it as long as that is free.
-std::size_t largest_free(const std::vector<Trial>& trials, const EngineOptions& options) {
+std::size_t largest_free(const std::vector<Trial>& trials, const EngineOptions& options, bool posed) {
   const std::size_t best = best_of(trials);
   std::size_t chosen = best;
   for (bool grown = true; grown;) {
@@ -176,7 +199,7 @@ std::size_t largest_free(const std::vector<Trial>& trials, const EngineOptions& 
     std::size_t next = chosen;
     for (std::size_t k = 0; k < trials.size(); ++k)
       if (k != chosen && contains(trials[k].group, trials[chosen].group) &&
-          is_free(trials[k], trials[best], options) &&
+          is_free(trials[k], trials[best], options, posed) &&
           (next == chosen || mean_evidence(trials[k].evidence) > mean_evidence(trials[next].evidence)))
         next = k;
     if (next != chosen) chosen = next, grown = true;
@@ -197,7 +220,8 @@ RotationGroup rotations_of(const std::string& group) {
 }
 
 SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions& options,
-                               const SoftState& coarse, const std::string& asked, Progress& progress) {
+                               const SoftState& coarse, const std::string& asked, bool posed,
+                               Progress& progress) {
   const SymmetryOptions& o = options.engine.symmetry;
   SymmetryChoice out{"C1", coarse, {}, {}, false};
   Trials all(problem, options, coarse);
@@ -218,13 +242,20 @@ SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions
     // Across every axis that is free, since a cyclic group alone hardly tells orders apart, and across one
     // that was asked for.
     const std::size_t cyclic_trials = trials.size(), best = best_of(trials);
-    const bool axis_found = is_cyclic(trials[largest_free(trials, options.engine)].group);
+    const bool axis_found = is_cyclic(trials[largest_free(trials, options.engine, posed)].group);
     for (std::size_t t = 0; axis_found && t < cyclic_trials && !progress.cancelled(); ++t)
-      if (is_cyclic(trials[t].group) && (t == best || is_free(trials[t], trials[best], options.engine)))
+      if (is_cyclic(trials[t].group) &&
+          (t == best || is_free(trials[t], trials[best], options.engine, posed)))
         add(all.dihedral(trials[t], key));
     if (asked_dihedral && named(trials, asked) == nullptr) add(all.dihedral(*named(trials, cyclic), key));
   }
-  const std::size_t k = largest_free(trials, options.engine);
+  if (!problem.planar() && asked.empty() && !posed &&
+      trials[largest_free(trials, options.engine, posed)].group == "C1")
+    for (const char* group : {"T", "O", "I"}) {
+      if (progress.cancelled()) return out;
+      add(all.from_nothing(group, key));
+    }
+  const std::size_t k = largest_free(trials, options.engine, posed);
   const Trial& chosen = asked.empty() ? trials[k] : *named(trials, asked);
   const Evidence& plain = trials.front().evidence;
   for (const Trial& t : trials) {
@@ -240,7 +271,7 @@ SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions
   const std::size_t best = best_of(trials);
   for (std::size_t t = 1; asked.empty() && out.group != "C1" && t < trials.size(); ++t)
     if (!contains(trials[t].group, out.group) && !contains(out.group, trials[t].group) &&
-        is_free(trials[t], trials[best], options.engine))
+        is_free(trials[t], trials[best], options.engine, posed))
       out.rival.push_back({trials[t].group, trials[t].state});
   out.report.asked = !asked.empty();
   out.report.group = out.group;

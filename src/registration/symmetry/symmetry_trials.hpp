@@ -24,9 +24,11 @@ struct SymmetryChoice {
 };
 
 /// `coarse`: of a competition. Under `asked` (a group's name, or empty) that group is chosen whatever the
-/// others say; they are tried all the same, for the report.
+/// others say; they are tried all the same, for the report. `posed`: independent starts pose the views alike
+/// without any group, which then must gain.
 SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions& options,
-                               const SoftState& coarse, const std::string& asked, Progress& progress);
+                               const SoftState& coarse, const std::string& asked, bool posed,
+                               Progress& progress);
 
 /// Under which group a template that has `group` is annealed; empty: none.
 RotationGroup rotations_of(const std::string& group);

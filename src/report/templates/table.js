@@ -1,6 +1,8 @@
 "use strict";
 // A table that sorts by its headings, searches every cell and shows a page at a time.
 function dataTable(root, table, rowsAPage) {
+  const printedRows = 300;
+  let rowsShown = rowsAPage;
   const state = {column: 0, down: false, text: "", page: 0};
   const make = (tag, parent, content) => {
     const element = document.createElement(tag);
@@ -60,9 +62,9 @@ function dataTable(root, table, rowsAPage) {
     const wanted = state.text.toLowerCase();
     const rows = table.rows.filter(r => wanted === "" ||
         r.some(v => v !== null && String(v.text ?? v).toLowerCase().includes(wanted))).sort(before);
-    const pages = Math.max(1, Math.ceil(rows.length / rowsAPage));
+    const pages = Math.max(1, Math.ceil(rows.length / rowsShown));
     state.page = Math.min(state.page, pages - 1);
-    const first = state.page * rowsAPage, part = rows.slice(first, first + rowsAPage);
+    const first = state.page * rowsShown, part = rows.slice(first, first + rowsShown);
     body.replaceChildren();
     for (const row of part) {
       const line = make("tr", body);
@@ -80,5 +82,8 @@ function dataTable(root, table, rowsAPage) {
   search.addEventListener("input", () => { state.text = search.value; state.page = 0; draw(); });
   back.addEventListener("click", () => { --state.page; draw(); });
   on.addEventListener("click", () => { ++state.page; draw(); });
+  const show = rows => { rowsShown = rows; state.page = 0; draw(); };
+  window.addEventListener("beforeprint", () => show(printedRows));
+  window.addEventListener("afterprint", () => show(rowsAPage));
   draw();
 }

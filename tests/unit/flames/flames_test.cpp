@@ -7,9 +7,11 @@
 
 #include "polar/core/rng.hpp"
 #include "polar/core/so3.hpp"
+#include "polar/core/symmetry_group.hpp"
 #include "polar/flames/local_minima.hpp"
 #include "polar/flames/neighbour_graph.hpp"
 #include "polar/flames/rotation_grid.hpp"
+#include "polar/flames/search_grid.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace polar {
@@ -97,6 +99,30 @@ TEST(LocalMinima, ignoresNanAndBreaksTiesOnce) {
   const NeighbourGraph pair{1, {1, 0}};
   EXPECT_EQ(local_minima({NAN, 1}, pair, 5), (std::vector<int>{1}));
   EXPECT_EQ(local_minima({2, 2}, pair, 5), (std::vector<int>{0}));
+}
+
+TEST(SearchGrid, OfANarrowPriorAndALargeGroupSomeRotationsAreLeft) {
+  const PosePrior prior{1e-4, false};
+  const SearchGrid grid = search_grid(2304, false, symmetry_rotations("D12"), prior);
+  EXPECT_GE(grid.rotation.size(), 24u);
+  EXPECT_LE(grid.rotation.size(), 60u);
+}
+
+TEST(SearchGrid, OutsideAPriorThereIsNothing) {
+  const PosePrior prior{0.2, true};
+  const SearchGrid whole = search_grid(2304, false), upright = search_grid(2304, false, {}, prior);
+  const auto allowed = std::count_if(whole.rotation.begin(), whole.rotation.end(),
+                                     [&](const Eigen::Matrix3f& r) { return prior.allows(r); });
+  EXPECT_EQ(upright.rotation.size(), static_cast<std::size_t>(allowed));  // as dense
+  EXPECT_NEAR(static_cast<double>(allowed) / 2304, prior.share(), 0.02);
+  for (std::uint64_t round = 0; round < 5; ++round) {
+    const Eigen::Matrix3f turn = grid_turn(false, KeyedRandom(1, round, 1), prior);
+    EXPECT_GT((turn - Eigen::Matrix3f::Identity()).norm(), 1e-3f);
+    for (const Eigen::Matrix3f& r : upright.rotation) {
+      const Eigen::Matrix3f turned = r * turn;
+      EXPECT_NEAR(turned(2, 2), r(2, 2), 1e-5f);
+    }
+  }
 }
 
 }  // namespace

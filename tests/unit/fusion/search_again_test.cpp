@@ -62,5 +62,56 @@ TEST(SearchAgain, allLocalisationsDecideWhereFewCannot) {
   EXPECT_LT(scene.brought_back(options), kViews);
 }
 
+// Views of one template, tilted by no more than 0.25 rad; every second one upside down.
+struct Upright {
+  Mixture mixture = fixture::random_mixture(30, 5);
+  Views views;
+  std::vector<Pose> truth;
+  Subsets all;
+
+  Upright() {
+    std::vector<std::uint32_t> every(200);
+    std::iota(every.begin(), every.end(), 0u);
+    for (std::size_t i = 0; i < kViews; ++i) {
+      KeyedRandom random(4, i, 1);
+      const Eigen::Matrix3d way = i % 2 == 1 ? so3_exp({kPi, 0, 0}) : Eigen::Matrix3d::Identity();
+      const Eigen::Vector3d tilt = 0.25 * random.uniform() * Eigen::Vector3d::UnitX();
+      truth.push_back({so3_exp({0, 0, 6 * random.uniform()}) * so3_exp(tilt) * way *
+                           so3_exp({0, 0, 6 * random.uniform()}),
+                       Eigen::Vector3d::Zero()});
+      views.view.push_back(fixture::draw_view(mixture, truth.back(), 200, 0.05f, 0.05f, i));
+      all.push_back(every);
+    }
+  }
+
+  std::vector<Pose> found(const PosePrior& prior, const std::vector<Pose>& from) const {
+    SearchAgainOptions options;
+    options.grid.translation = axis_shifts(0.1f, false);
+    NoiseModel noise;
+    noise.width = 0.05;
+    std::vector<Pose> pose = from;
+    search_again(views, std::vector<Eigen::Vector3f>(kViews, Eigen::Vector3f::UnitZ()), all, mixture, noise,
+                 search_grid(2304, false, {}, prior), grid_turn(false, KeyedRandom(1, 0, 1), prior), options,
+                 pose);
+    return pose;
+  }
+};
+
+TEST(SearchAgain, nothingIsFoundOutsideAPrior) {
+  const Upright scene;
+  const PosePrior upright{0.2, false}, either{0.2, true};
+  const std::vector<Pose> lying(kViews, {so3_exp({kPi / 2, 0, 0}), Eigen::Vector3d::Zero()});
+  const std::vector<Pose> a = scene.found(either, lying), b = scene.found(upright, lying),
+                          c = scene.found(upright, scene.truth);
+  for (std::size_t i = 0; i < kViews; ++i) {
+    EXPECT_LT(geodesic_angle(a[i].rotation, scene.truth[i].rotation), 0.1) << i;
+    EXPECT_TRUE(upright.allows(b[i].rotation)) << i;
+    EXPECT_TRUE(upright.allows(c[i].rotation)) << i;  // the right pose, where it is upside down, is left
+    if (i % 2 == 0) {
+      EXPECT_LT(geodesic_angle(b[i].rotation, scene.truth[i].rotation), 0.1) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace polar

@@ -56,6 +56,11 @@ TEST(SoftAnnealer, aTiltPriorHoldsEveryPose) {
   SoftState state = annealer.random_start(1);
   annealer.anneal({6, 0.2, 0.1, 0.1, 1, 0.8, true}, 1, state);
   for (const SoftPose& b : state.best) EXPECT_GT(b.rotation(2, 2), std::cos(0.5));
+  SoftState ring = state;
+  ring.group = symmetry_rotations("D120");  // its asymmetric unit holds none of the grid's upright rotations
+  const SoftAnnealer narrow(p.plain, p.plain.all, {}, {1e-4, false});
+  narrow.anneal({1, 0.1, 0.1, 1, 1, 0.8, false}, 2, ring);
+  for (const SoftPose& b : ring.best) EXPECT_GT(b.rotation(2, 2), std::cos(0.5));
 }
 
 TEST(SoftAnnealer, planarPosesStayInThePlane) {

@@ -9,6 +9,7 @@
 #include "polar/registration/register.hpp"
 #include "registration/anneal/soft_poses.hpp"
 #include "registration/symmetry/harmonics.hpp"
+#include "registration/symmetry/relaxation.hpp"
 #include "registration/symmetry/self_similarity.hpp"
 #include "registration/symmetry/symmetry_frame.hpp"
 #include "scene.hpp"
@@ -83,6 +84,41 @@ TEST(AlignAzimuths, putsTheSitesOfAllViewsOnEachOther) {
     phase.push_back(8 * std::atan2(residual(1, 0), residual(0, 0)));
   }
   for (const double a : phase) EXPECT_GT(std::cos(a - phase[0]), 0.8);
+}
+
+// A symmetric template of a ring of eight under poses that are right up to the ring's turns.
+Relaxation relaxed_ring(bool complete) {
+  Eigen::Matrix3Xd ring = orbit_structure("C8", 2, 22);  // the units' first sites, then their second ones
+  Mixture m;
+  m.centre = ring.cast<float>();
+  m.weight = Eigen::VectorXf::Constant(16, 0.0625f);
+  if (!complete) ring.col(0) = ring.col(1), ring.col(8) = ring.col(9);
+  const Scene scene(ring, 60, 0.9, 5, 6);
+  const Problems p = make_problems(scene.views, {}, 1);
+  Fit fit;
+  fit.mixture = m;
+  fit.noise.width = 0.03;
+  fit.group = symmetry_rotations("C8");
+  KeyedRandom random(4, 0, 1);
+  for (const Pose& pose : scene.pose)
+    fit.pose.push_back(Pose{fit.group[random.below(8)], Eigen::Vector3d::Zero()} * pose);
+  return relaxed(p.plain, {}, fit);
+}
+
+TEST(Relaxation, findsTheUnitThatEveryViewLacks) {
+  const Relaxation r = relaxed_ring(false);
+  EXPECT_TRUE(r.gain.better_by(3)) << r.gain.gain << " +- " << r.gain.standard_error;
+  EXPECT_TRUE(r.fit.group.empty());
+  const Eigen::VectorXf& w = r.fit.mixture.weight;
+  Eigen::Index gap = 0;
+  w.head(8).minCoeff(&gap);
+  for (Eigen::Index k = 0; k < 16; ++k)
+    EXPECT_TRUE(k % 8 == gap ? w[k] < 0.01f : w[k] > 0.05f) << k << ": " << w[k];
+}
+
+TEST(Relaxation, doesNotGainWhereLabelsAreMissingAtRandom) {
+  const Relaxation r = relaxed_ring(true);
+  EXPECT_FALSE(r.gain.better_by(2)) << r.gain.gain << " +- " << r.gain.standard_error;
 }
 
 Registration registered(const Scene& scene, const std::string& symmetry) {

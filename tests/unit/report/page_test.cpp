@@ -33,6 +33,7 @@ TEST(ReportRecord, HoldsWhatTheRunWrote) {
   labelled.counts.labels = {0, 7};
   labelled.place_nm = Eigen::Matrix3Xd::Zero(3, 2);
   results.labelled = labelled;
+  results.registration.history = {{0.09, 3, NAN, 1.5}};
   const RunRecord r = through_file(results);
   const std::vector<PoseRow> rows = pose_rows(results);
   ASSERT_EQ(r.poses.size(), rows.size());
@@ -65,7 +66,11 @@ TEST(ReportRecord, HoldsWhatTheRunWrote) {
   EXPECT_EQ(r.refused.size(), 1u);
   EXPECT_EQ(r.refused[0].log_likelihood, results.registration.view[1].log_likelihood);
   EXPECT_EQ(r.least_posterior_share, VerdictOptions().least_posterior_share);
-  EXPECT_TRUE(r.history.empty());
+  ASSERT_EQ(r.history.size(), 1u);
+  EXPECT_EQ(r.history[0].width_nm, results.normalisation.scale_nm * 0.09);
+  EXPECT_EQ(r.history[0].moved, 3);
+  EXPECT_TRUE(std::isnan(r.history[0].escaped));
+  EXPECT_EQ(r.history[0].held_out, 1.5);
 }
 
 // The smallest record that is one, with one particle, and with `more` in it.
@@ -120,6 +125,7 @@ TEST(ReportRecord, TakesWhatMayBeThereAndDoesWithout) {
     f.write("/run/starts/gain_std", std::vector<double>{0.5});
     f.write("/run/history/moved", std::vector<double>{5, 1});
     f.write("/run/history/escaped", std::vector<double>{2});
+    f.write("/run/history/held_out_log_likelihood", std::vector<double>{1, 2});
     f.write("/poses/posterior_share", std::vector<double>{0.75});
     f.write("/rejected/scores/log_likelihood", std::vector<double>{2});
     for (const char* name : {"margin", "rotation_std_deg", "translation_std_nm", "posterior_share",

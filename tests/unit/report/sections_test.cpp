@@ -156,6 +156,10 @@ TEST_F(Sections, ScoresDrawTheCutAndNameEveryRejection) {
   EXPECT_THAT(figure(s, "log-likelihood").svg, HasSubstr(">unlike<"));
   EXPECT_THAT(figure(s, "log-likelihood").caption, HasSubstr("Beyond: 1 particle"));
   EXPECT_THAT(figure(s, "margin").caption, HasSubstr("have 0.5"));  // all alike: said, not drawn
+  for (std::size_t i = 0; i < kParticles; ++i)
+    record_.poses[i].margin = i < 4 ? 0 : 0.1 * static_cast<double>(i), record_.fit[i].posterior_share = 1;
+  EXPECT_THAT(figure(scores_section(Subject(record_)), "margin").caption,
+              HasSubstr("no second pose was found"));
   EXPECT_THAT(figure(s, "rejections").caption, HasSubstr("1: made up, to test"));
   ParticleScores refused;
   refused.log_likelihood = 0.5, refused.fit.posterior_share = 0.7;
@@ -231,10 +235,12 @@ TEST_F(Sections, StartsHaveTheirStandardErrorsWhereTheRecordDoes) {
   EXPECT_THAT(figure(s, "rounds").svg, IsEmpty());
   EXPECT_THAT(figure(s, "time").svg, HasSubstr("1.25 s"));
   record_.starts[0].held_out_std = 0.25;
-  record_.history = {{10, 2, 1}, {1, 0, 1.5}};
+  record_.history = {{4.5, 10, 2, 1}, {1.5, 1, PoseRow::kNone, 1.5}};
   s = search_section(Subject(record_));
   EXPECT_THAT(figure(s, "starts").svg, HasSubstr("± 0.2500"));
   EXPECT_THAT(figure(s, "rounds").svg, Not(IsEmpty()));
+  EXPECT_THAT(figure(s, "rounds-score").caption,
+              HasSubstr("4.50 nm in the first round and of 1.50 nm in the last"));
 }
 
 TEST_F(Sections, ChannelsHaveAColourEach) {

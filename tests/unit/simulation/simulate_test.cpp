@@ -189,5 +189,27 @@ TEST(CramerRao, PairMedianOfIsotropicErrors) {
   EXPECT_NEAR(pair_median_deg(bound, 1) / expected, 1, 0.03);
 }
 
+TEST(Simulate, CopiesDifferInRadiusAndHeight) {
+  SimulationOptions o;
+  o.particles = 400, o.orientation = "identity", o.cramer_rao = false, o.label_size_nm = 0;
+  o.sigma_xy_nm = {1e-6, 1e-6};
+  o.radius_std_nm = 4, o.height_std_nm = 6;
+  const Simulation s = simulate(make_structure({"nuclear_pore"}), o);
+  double radius = 0, height = 0;
+  for (const SimulatedParticle& p : s.particle) {
+    radius += p.radius_change_nm * p.radius_change_nm / o.particles;
+    height += p.height_change_nm * p.height_change_nm / o.particles;
+  }
+  // A standard deviation from 400 draws is known to 3.5 %: three of these.
+  EXPECT_NEAR(std::sqrt(radius), 4, 0.42);
+  EXPECT_NEAR(std::sqrt(height), 6, 0.63);
+  for (std::size_t i = 0; i < s.table.size(); ++i) {
+    const auto& x = s.table.position_nm[i];
+    const SimulatedParticle& p = s.particle[static_cast<std::size_t>(s.table.particle[i])];
+    EXPECT_NEAR(std::hypot(x[0], x[1]), 53.5 + p.radius_change_nm, 1e-3);
+    EXPECT_NEAR(std::abs(x[2]), 25 + p.height_change_nm / 2, 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace polar
