@@ -12,7 +12,14 @@ namespace polar::simulation {
 
 namespace {
 // One stream a purpose: more blinks must not change the poses.
-enum Stage : std::uint32_t { kPoseStage = 0x41, kLabelStage, kCropStage, kOutlierStage, kNoiseStage, kShapeStage };
+enum Stage : std::uint32_t {
+  kPoseStage = 0x41,
+  kLabelStage,
+  kCropStage,
+  kOutlierStage,
+  kNoiseStage,
+  kShapeStage
+};
 
 // Strands: a persistent random walk of this many steps, each this share of the radius, turning by this angle.
 constexpr int kStrandSteps = 40;

@@ -33,10 +33,10 @@ struct SimulationOptions {
   Range sigma_y_factor = {1, 1};           // sigma_y over sigma_x
   Range sigma_z_factor = {2, 3};           // sigma_z over sigma_x
   std::string sigma_per = "localisation";  // localisation | particle: how often a sigma is drawn
-  double radius_std_nm = 0;  // standard deviation, over particles, of the sites' distance from the axis
-  double height_std_nm = 0;  // and of the structure's height along it, stretched evenly
-  Range visibility = {1, 1};         // share of a particle that is seen, cut by a plane of random direction
-  double outlier_fraction = 0;       // share of all localisations that do not come from the structure
+  double radius_std_nm = 0;     // standard deviation, over particles, of the sites' distance from the axis
+  double height_std_nm = 0;     // and of the structure's height along it, stretched evenly
+  Range visibility = {1, 1};    // share of a particle that is seen, cut by a plane of random direction
+  double outlier_fraction = 0;  // share of all localisations that do not come from the structure
   std::string outliers = "uniform";  // uniform (in a ball of 1.5 radii) | strands (random curves from a site)
   double field_spacing_nm =
       0;                      // > 0: particles stand on a square lattice of this pitch, as in a field of view

@@ -17,7 +17,7 @@ struct Competition {
   SoftState winner;
   bool crowded = false;  // of which problem the winner is
   std::vector<StartReport> report;
-  double agreement = 0;  // of the two best that know nothing of each other
+  double agreement = 0;   // of the two best that know nothing of each other
   bool finished = false;  // false: cancelled
   std::vector<std::string> warnings = {};
 };
