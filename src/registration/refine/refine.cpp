@@ -61,7 +61,7 @@ Fit Refiner::begin(std::vector<Pose> pose, const NoiseModel& noise, const Rotati
   return fit;
 }
 
-void Refiner::sweep(const Subsets& subsets, Fit& fit, int sweeps, bool poses) const {
+void Refiner::sweep(const Subsets& subsets, Fit& fit, int sweeps) const {
   FusionData data(problem_.views, problem_.axes, fit.noise, subsets);
   for (int s = 0; s < sweeps; ++s) {
     MaximisationOptions em;
@@ -72,7 +72,7 @@ void Refiner::sweep(const Subsets& subsets, Fit& fit, int sweeps, bool poses) co
     em.support = problem_.crowded || !fit.group.empty();
     show(fit, fit.mixture, data);
     maximise(fit.mixture, data, fit.pose, em);
-    if (s == 0 || !poses) continue;
+    if (s == 0) continue;
     show(fit, fit.mixture, data);
     refine_poses(fit.mixture, data, fit.pose, 2);
   }
@@ -106,6 +106,7 @@ void Refiner::search(const Subsets& subsets, Fit& fit) const {
   ++fit.rounds;
 }
 
+// Template and poses without the held-out localisations.
 Fit Refiner::blind(Fit fit) const {
   // A label that judges is missing in what was fitted.
   fit.occupancy = std::numeric_limits<double>::infinity();

@@ -63,10 +63,7 @@ class Refiner {
   void search(Fit& fit) const;
   /// Template and poses on all localisations.
   void sweep(Fit& fit, int sweeps) const;
-  /// Template and poses fitted again without the held-out localisations.
-  Fit blind(Fit fit) const;
-  /// Of a fit that is blind to them.
-  Evidence held_out(const Fit& fit) const;
+  /// Of template and poses fitted again without the held-out localisations.
   Evidence judge(const Fit& fit) const { return held_out(blind(fit)); }
   /// The same with every pose searched for anew, so that nothing of the held-out localisations is left in it,
   /// and beside it under the cloud that is left of the template when it is turned any way about its centre:
@@ -79,7 +76,9 @@ class Refiner {
  private:
   void judge_round(const std::vector<Pose>& before, bool searched, Fit& fit) const;
   void search(const Subsets& subsets, Fit& fit) const;
-  void sweep(const Subsets& subsets, Fit& fit, int sweeps, bool poses = true) const;
+  void sweep(const Subsets& subsets, Fit& fit, int sweeps) const;
+  Fit blind(Fit fit) const;
+  Evidence held_out(const Fit& fit) const;
 
   const Problem& problem_;
   const SearchGrid& grid_;
