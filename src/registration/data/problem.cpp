@@ -102,9 +102,10 @@ void hold_out(const EvidenceOptions& options, std::uint64_t draw, Problem& probl
 }
 
 Evidence over_draws(const EvidenceOptions& options, int draws, Problem& problem,
-                    const std::function<Evidence()>& judge) {
+                    const std::function<Evidence()>& judge,
+                    const std::function<bool(const std::vector<Evidence>&)>& enough) {
   std::vector<Evidence> drawn;
-  for (int d = 0; d < draws; ++d) {
+  for (int d = 0; d < draws && !(enough && d > 0 && enough(drawn)); ++d) {
     hold_out(options, static_cast<std::uint64_t>(d), problem);
     drawn.push_back(judge());
   }

@@ -48,10 +48,11 @@ Problems make_problems(const Views& views, const EvidenceOptions& options, std::
 /// Other bursts judge: those of this draw, by the seed of the problem. The same in both problems of a set.
 void hold_out(const EvidenceOptions& options, std::uint64_t draw, Problem& problem);
 
-/// Of each view's evidence by so many draws the mean; `judge` looks at the problem, which is left with the
-/// last.
+/// Of each view's evidence by so many draws the mean, or by fewer once `enough` says so of those that there
+/// are; `judge` looks at the problem, which is left with the last.
 Evidence over_draws(const EvidenceOptions& options, int draws, Problem& problem,
-                    const std::function<Evidence()>& judge);
+                    const std::function<Evidence()>& judge,
+                    const std::function<bool(const std::vector<Evidence>&)>& enough = {});
 
 /// At most `most` of them, evenly through the list: neighbours may share a field of view.
 std::vector<int> evenly(const std::vector<int>& views, std::size_t most);

@@ -141,15 +141,19 @@ class Trials {
     return judged(group, similarity, std::move(state), key);
   }
   Trial judged(const std::string& group, double similarity, SoftState state, std::uint64_t key) {
-    std::vector<Evidence> drawn;
-    for (int d = 0; d < o_.draws; ++d) {
-      hold_out(options_.evidence, static_cast<std::uint64_t>(d), drawn_);
-      drawn.push_back(annealer_.judge(state, key, drawn_));
-      if (plain_.size() <= static_cast<std::size_t>(d)) plain_.push_back(drawn.back());  // C1 is the first
-      const Comparison c = compare(mean_over({plain_.begin(), plain_.begin() + d + 1}), mean_over(drawn));
-      if (c.gain < -o_.means_standard_errors * c.standard_error) break;  // other draws would not make it free
-    }
-    return {group, similarity, std::move(state), mean_over(drawn)};
+    const bool first = plain_.empty();  // C1 is
+    const auto judge = [&] {
+      Evidence evidence = annealer_.judge(state, key, drawn_);
+      if (first) plain_.push_back(evidence);
+      return evidence;
+    };
+    const auto lost = [&](const std::vector<Evidence>& drawn) {  // other draws would not make it free
+      const auto as_many = plain_.begin() + static_cast<std::ptrdiff_t>(drawn.size());
+      const Comparison c = compare(mean_over({plain_.begin(), as_many}), mean_over(drawn));
+      return c.gain < -o_.means_standard_errors * c.standard_error;
+    };
+    Evidence evidence = over_draws(options_.evidence, o_.draws, drawn_, judge, lost);
+    return {group, similarity, std::move(state), std::move(evidence)};
   }
 
   const Problem& problem_;
