@@ -394,6 +394,48 @@ for name, values in scaled.items():
     out[name] = [v[0], v[len(v) // 2], v[-1]]
 print(json.dumps({{"n": len(linked), "columns": out}}))
 """
+# Picasso's link takes one distance for all: the rule for uncertainties again, as simply as it can be said.
+RULE = """
+import h5py, json, numpy
+locs = h5py.File({file!r})["locs"][:]
+pixel = 160
+value = {{name: locs[name].astype(float) for name in ("frame", "x", "y", "lpx", "lpy", "photons", "bg")}}
+variance = (value["lpx"]**2 + value["lpy"]**2) / 2
+in_frame = {{}}
+for row, frame in enumerate(value["frame"]):
+    in_frame.setdefault(int(frame), []).append(row)
+free = numpy.ones(len(locs), bool)
+chains = []
+for frame in sorted(in_frame):
+    for start in in_frame[frame]:
+        if not free[start]:
+            continue
+        chain = []
+        here = start
+        while here is not None:
+            chain.append(here)
+            free[here] = False
+            now, here = here, None
+            for later in range(int(value["frame"][now]) + 1, int(value["frame"][now]) + {dark} + 2):
+                near = [row for row in in_frame.get(later, ()) if free[row]
+                        and (value["x"][row] - value["x"][now])**2 + (value["y"][row] - value["y"][now])**2
+                        <= {sigmas}**2 * (variance[row] + variance[now])]
+                if near:
+                    here = near[0]
+                    break
+        chains.append(chain)
+def weighed(name, by):
+    return [numpy.average(value[name][c], weights=value[by][c]**-2) * pixel for c in chains]
+information = [[numpy.sum(value[by][c]**-2) for by in ("lpx", "lpy")] for c in chains]
+merged = {{"x": weighed("x", "lpx"), "y": weighed("y", "lpy"), "photons": [value["photons"][c].sum() for c in chains],
+          "sigma_xy": [pixel * ((1 / a + 1 / b) / 2)**.5 for a, b in information], "bg": [value["bg"][c].sum() for c in chains],
+          "frame": [value["frame"][c[0]] for c in chains], "merged": [len(c) for c in chains]}}
+out = {{}}
+for name, values in merged.items():
+    v = numpy.sort(numpy.asarray(values, float))
+    out[name] = [v[0], v[len(v) // 2], v[-1]]
+print(json.dumps({{"n": len(chains), "columns": out}}))
+"""
 ORIGAMI = pathlib.Path(__file__).resolve().parents[3] / "shared/data/formats/picasso_origami_simulated_locs.hdf5"
 
 
@@ -408,18 +450,24 @@ class PicassoLink(PolarCase):
         if imported.returncode != 0:
             raise unittest.SkipTest("picasso.postprocess cannot be imported: " + imported.stderr.strip().splitlines()[-1])
 
-    def test_merges_the_same_localisations(self):
-        script = self.write("link.py", LINK.format(file=str(ORIGAMI), reach=10 / 160, dark=1))
+    def compare(self, script, distance, dark_frames):
+        script = self.write("link.py", script)
         done = subprocess.run([os.environ["PICASSO_PYTHON"], script], capture_output=True, text=True, timeout=240)
         self.assertEqual(done.returncode, 0, done.stderr)
         theirs = json.loads(done.stdout.splitlines()[-1])
-        ours = json.loads(self.ok("inspect", ORIGAMI, "--json", "--set", "input.group.distance=10 nm",
-                                  "--set", "input.group.dark_frames=1", "--set", "input.pixel_size_nm=160"))
+        ours = json.loads(self.ok("inspect", ORIGAMI, "--json", "--set", f"input.group.distance={distance}",
+                                  "--set", f"input.group.dark_frames={dark_frames}", "--set", "input.pixel_size_nm=160"))
         self.assertEqual(ours["localisations"], theirs["n"])
         columns = {column["name"]: column for column in ours["columns"]}
         for name, values in theirs["columns"].items():
             for of, value in zip(("minimum", "median", "maximum"), values):
                 self.assertLess(abs(columns[name][of] / value - 1) if value else abs(columns[name][of]), 1e-5, (name, of))
+
+    def test_merges_the_same_localisations(self):
+        self.compare(LINK.format(file=str(ORIGAMI), reach=10 / 160, dark=1), "10 nm", 1)
+
+    def test_sigmas_merge_what_the_rule_written_out_does(self):
+        self.compare(RULE.format(file=str(ORIGAMI), sigmas=2, dark=1), "2 sigma", 1)
 
 
 if __name__ == "__main__":

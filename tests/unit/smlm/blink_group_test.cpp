@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <random>
 
 #include "fixture.hpp"
 #include "smlm/table_reader.hpp"
@@ -86,6 +87,93 @@ TEST_F(BlinkGroup, WithoutFramesOrWithABadDistanceItSaysSo) {
   for (const char* wrong : {"5", "nm", "-1 nm", "5 um", "5 nm x", "1e9 nm"})
     EXPECT_EQ(violations(BlinkOptions{wrong, 1}).size(), 1u) << wrong;
   EXPECT_EQ(violations(BlinkOptions{"5 nm", -1}).size(), 1u);
+}
+
+// A crowded field: uncertainties differ by row and axis, chains compete, particles interleave. The rule
+// again, slow and written out: every row against every other.
+class Crowd : public BlinkGroup {
+ protected:
+  struct Blink {
+    std::array<double, 3> x, sigma;
+    int frame, particle;
+  };
+  std::vector<Blink> blink_;
+
+  void draw(int rows) {
+    std::mt19937 random(5);
+    const auto uniform = [&](double low, double high) {
+      return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+    };
+    for (int i = 0; i < rows; ++i)
+      blink_.push_back({{uniform(0, 120), uniform(0, 120), uniform(0, 120)},
+                        {uniform(1, 9), uniform(1, 9), uniform(2, 25)},
+                        static_cast<int>(random() % 40),
+                        static_cast<int>(random() % 3)});
+  }
+  LocalisationTable merge(double sigmas, int dark_frames) {
+    std::string text = "x [nm],y [nm],z [nm],sigma_x [nm],sigma_y [nm],sigma_z [nm],photons,frame,particle\n";
+    for (const Blink& b : blink_) {
+      for (const double v : b.x) text += std::to_string(v) + ",";
+      for (const double v : b.sigma) text += std::to_string(v) + ",";
+      text += "100," + std::to_string(b.frame) + "," + std::to_string(b.particle) + "\n";
+    }
+    ReadOptions options;
+    options.group = {std::to_string(sigmas) + " sigma", dark_frames};
+    return read_table(write("crowd.csv", text), options);
+  }
+  bool same_molecule(const Blink& a, const Blink& b, double sigmas) const {
+    const double lateral = (a.sigma[0] * a.sigma[0] + a.sigma[1] * a.sigma[1]) / 2 +
+                           (b.sigma[0] * b.sigma[0] + b.sigma[1] * b.sigma[1]) / 2;
+    const double axial = a.sigma[2] * a.sigma[2] + b.sigma[2] * b.sigma[2];
+    return a.particle == b.particle &&
+           std::hypot(a.x[0] - b.x[0], a.x[1] - b.x[1]) <= sigmas * std::sqrt(lateral) &&
+           std::abs(a.x[2] - b.x[2]) <= sigmas * std::sqrt(axial);
+  }
+  std::vector<std::vector<std::size_t>> chains(double sigmas, int dark_frames) const {
+    std::vector<bool> taken(blink_.size(), false);
+    std::vector<std::vector<std::size_t>> all;
+    for (int frame = 0; frame < 40; ++frame)
+      for (std::size_t start = 0; start < blink_.size(); ++start) {
+        if (taken[start] || blink_[start].frame != frame) continue;
+        all.push_back({});
+        for (std::size_t here = start; here < blink_.size();) {
+          all.back().push_back(here);
+          taken[here] = true;
+          std::size_t next = blink_.size();
+          for (int later = 1; later <= dark_frames + 1 && next == blink_.size(); ++later)
+            for (std::size_t i = blink_.size(); i-- > 0;)
+              if (!taken[i] && blink_[i].frame == blink_[here].frame + later &&
+                  same_molecule(blink_[here], blink_[i], sigmas))
+                next = i;
+          here = next;
+        }
+      }
+    return all;
+  }
+};
+
+TEST_F(Crowd, SigmasMergeWhatTheRuleWrittenOutDoes) {
+  draw(1500);
+  for (const auto& [sigmas, dark_frames] : {std::pair{2.0, 1}, {2.0, 0}, {1.3, 3}}) {
+    const LocalisationTable t = merge(sigmas, dark_frames);
+    const auto expected = chains(sigmas, dark_frames);
+    ASSERT_EQ(t.size(), expected.size());
+    EXPECT_LT(t.size(), 1300u) << "hardly anything was merged";
+    const std::vector<double> photons = column(t, "photons"), merged = column(t, "merged");
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      ASSERT_EQ(t.source_row[k], expected[k].front() + 1);
+      ASSERT_EQ(merged[k], static_cast<double>(expected[k].size()));
+      EXPECT_EQ(photons[k], 100 * merged[k]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        double weight = 0, sum = 0;
+        for (const std::size_t i : expected[k]) {
+          const double w = 1 / (blink_[i].sigma[axis] * blink_[i].sigma[axis]);
+          weight += w, sum += w * blink_[i].x[axis];
+        }
+        EXPECT_NEAR(t.position_nm[k][axis], sum / weight, 1e-4);  // six decimals in, float variances
+      }
+    }
+  }
 }
 
 // A thousand molecules far apart, each on for some frames in a row: one localisation each comes out.
