@@ -9,8 +9,9 @@ namespace polar::report {
 
 namespace {
 constexpr std::size_t kMostChannels = 4;
-// Told apart by most colour-blind readers: magenta, green, and two more.
-constexpr Tint kTints[kMostChannels] = {{1, 0.2, 0.9}, {0.2, 1, 0.3}, {0.3, 0.6, 1}, {1, 0.7, 0.1}};
+// In the order of preview.png, a channel in one colour everywhere: green and magenta, which most colour-blind
+// readers tell apart, cyan and yellow.
+constexpr Tint kTints[kMostChannels] = {{0.2, 1, 0.3}, {1, 0.2, 0.9}, {0.2, 0.9, 1}, {1, 0.9, 0.2}};
 
 const smlm::ExtraColumn* column_named(const smlm::LocalisationTable& table, const std::string& name) {
   for (const smlm::ExtraColumn& c : table.extra)

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "background.hpp"
 #include "csv_line.hpp"
 #include "emitter.hpp"
 #include "label_counts.hpp"
@@ -223,8 +224,11 @@ DiscreteSites find_sites(const Table& t, const RenderOptions& options) {
   const auto density_at = [&](const Eigen::Matrix3d& c, const Eigen::Vector3d& x, std::size_t k) {
     return emitter(m, c, x, k).density;
   };
+  std::vector<results::Emitter> emitters(m.site.size());
+  const double background = results::background_density(
+      t, [&](std::size_t row) { return belongs_to(m, t, row, emitters).back(); }, m.background_density);
   out.counts = results::count_labels(results::candidates_of(t, m.site.size(), density_at), m.site.size(),
-                                     m.background_density, std::max(m.background_share, kLeastBackground));
+                                     background, m.background_share);
   for (std::size_t k = 0; k < out.site.size(); ++k) {
     out.site[k].occupancy = out.counts.occupancy[k];
     out.orbit.push_back(k);

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "background.hpp"
 #include "emitter.hpp"
 #include "label_counts.hpp"
+#include "polar/core/covariance3.hpp"
 #include "polar/core/median.hpp"
 
 namespace polar {
@@ -74,8 +76,16 @@ UnitOccupancy occupied_units(const smlm::LocalisationTable& t, const TemplateSit
     for (const Site& s : units[u].centre) sum += s.share * results::emitter(t.planar, c, x, s).density;
     return sum;
   };
+  const auto stray = [&](std::size_t row) {
+    const Eigen::Matrix3d c = matrix(t.covariance_nm2[row]);
+    const Eigen::Vector3d x(t.position_nm[row].data());
+    double units_density = 0;
+    for (std::size_t u = 0; u < units.size(); ++u) units_density += density(c, x, u);
+    const double none = background_share * background;
+    return none / (none + (1 - background_share) * units_density / static_cast<double>(units.size()));
+  };
   out.counts = results::count_labels(results::candidates_of(t, units.size(), density), units.size(),
-                                     background, background_share);
+                                     results::background_density(t, stray, background), background_share);
   return out;
 }
 

@@ -89,8 +89,11 @@ class Cluster:
         self._daemons.append(subprocess.Popen(words, env=self.environment, stdin=subprocess.DEVNULL,
                                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
 
+    def ask(self, *words):
+        return subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=120)
+
     def output(self, *words, check=True):
-        done = subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=30)
+        done = self.ask(*words)
         if check and done.returncode != 0:
             raise AssertionError(f"{' '.join(words)}: {done.stderr}")
         return done.stdout

@@ -304,10 +304,13 @@ class Picasso(ProgramCase):
 
 
 READERS = """
-import json, mrcfile, numpy, starfile
+import gemmi, json, mrcfile, numpy, starfile
+crystal = gemmi.read_ccp4_map("results/template.mrc")
 with mrcfile.open("results/template.mrc") as map:
     volume = {"valid": mrcfile.validate("results/template.mrc"), "shape": map.data.shape, "sum": float(map.data.sum(dtype=float)),
-              "voxel": float(map.voxel_size.x), "origin": [float(map.header.origin[k]) for k in "xyz"], "volume": bool(map.is_volume())}
+              "voxel": float(map.voxel_size.x), "origin": [float(map.header.origin[k]) for k in "xyz"], "volume": bool(map.is_volume()),
+              "gemmi": float(abs(numpy.array(crystal.grid, copy=False).transpose(2, 1, 0) - map.data).max()),
+              "spacing": list(crystal.grid.spacing)}
 star = starfile.read("results/poses.star")
 p = star["particles"]
 out = {"map": volume, "pixel": float(star["optics"]["rlnImagePixelSize"].iloc[0]), "name": [str(n) for n in p["rlnTomoParticleName"]],
@@ -317,12 +320,15 @@ print(json.dumps(out))
 """
 
 
-@program("READERS_PYTHON", "mrcfile or starfile")
+@program("READERS_PYTHON", "gemmi, mrcfile or starfile")
 class MapsAndStars(ProgramCase):
     def test_mrcfile_and_starfile_read_what_was_written(self):
         read = self.python("READERS_PYTHON", READERS)
         volume = read["map"]
         self.assertTrue(volume["valid"] and volume["volume"])
+        # A reader of crystals' maps, which has its own idea of axes, finds every voxel in its place.
+        self.assertEqual(volume["gemmi"], 0)
+        self.assertAllClose(volume["spacing"], 3 * [volume["voxel"]], 1e-3)
         # A map in ångström holds as many localisations as there are: density times the voxel's volume.
         self.assertLess(abs(volume["sum"] * (volume["voxel"] / 10) ** 3 / len(self.aligned) - 1), .05)
         for axis, origin, size in zip("xyz", volume["origin"], volume["shape"][::-1]):

@@ -17,9 +17,9 @@ struct UnitOccupancy {
 };
 
 /// A unit is the part of the fused template that lies nearest to the unit's spot. `background`: density of
-/// localisations that belong to none, nm^-3 (planar nm^-2); `background_share`: of the localisations, a first
-/// guess. Units count where they lie farther from one another than three standard deviations of a unit's own
-/// localisations.
+/// localisations that belong to none, nm^-3 (planar nm^-2), and `background_share`, of the localisations:
+/// first guesses. Units count where they lie farther from one another than three standard deviations of a
+/// unit's own localisations.
 UnitOccupancy occupied_units(const smlm::LocalisationTable& superparticle, const TemplateSites& fused,
                              const Eigen::Matrix3Xd& unit_nm, double background, double background_share);
 

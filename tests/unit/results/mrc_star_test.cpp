@@ -42,6 +42,18 @@ TEST(Mrc, HeaderAndValues) {
   EXPECT_EQ(word<std::int32_t>(bytes, 23), 1);
   EXPECT_FLOAT_EQ(word<float>(bytes, 50), -15);
   EXPECT_EQ(bytes.substr(208, 4), "MAP ");
+  // ChimeraX and IMOD know the byte order by the stamp and the mode, the voxel by cell over sampling, the
+  // axes by words 17 to 19; both refuse, or skip, what an extended header of the wrong length would shift.
+  EXPECT_EQ(bytes.substr(212, 4), std::string("DD\0\0", 4));
+  EXPECT_EQ(word<std::int32_t>(bytes, 24), 0) << "no extended header";
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(word<std::int32_t>(bytes, 5 + axis), 0) << "starts at the origin, which words 50 to 52 place";
+    EXPECT_EQ(word<std::int32_t>(bytes, 8 + axis), word<std::int32_t>(bytes, 1 + axis));
+    EXPECT_FLOAT_EQ(word<float>(bytes, 14 + axis), 90);
+    EXPECT_EQ(word<std::int32_t>(bytes, 17 + axis), static_cast<std::int32_t>(axis) + 1);
+  }
+  EXPECT_EQ(word<std::int32_t>(bytes, 28), 20141) << "MRC2014, second revision";
+  EXPECT_EQ(word<std::int32_t>(bytes, 56), 1) << "label";
   EXPECT_FLOAT_EQ(word<float>(bytes, 256 + 4), 3);
   EXPECT_THROW(write_mrc(directory.path("no/a.mrc"), v), smlm::Error);
 }
