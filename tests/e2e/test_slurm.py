@@ -74,7 +74,7 @@ class Slurm(PolarCase):
                 if name not in found:
                     if (folder / ".polar.lock").exists():
                         found[name] = self.processes(name)
-                elif name not in stopped and (folder / "checkpoint.1").exists():
+                elif name not in stopped and any((folder / f"checkpoint.{k}").exists() for k in (1, 2)):
                     for process in found[name]:
                         os.kill(process, signal.SIGSTOP)
                     stopped.add(name)
