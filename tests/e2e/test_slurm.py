@@ -26,7 +26,7 @@ class Slurm(PolarCase):
         super().setUp()
         write_batch(self)
         # The first two have seconds of work left after their last checkpoint, on any machine: draws that are never
-        # enough. A signal that follows on their being caught cannot come after their end.
+        # enough.
         self.config.write_text(self.config.read_text().replace(FOLDERS, SLOWER))
         self.cluster = Cluster(cpus=4)
         self.addCleanup(self.cluster.stop)
@@ -118,9 +118,12 @@ class Slurm(PolarCase):
         requeued, out_of_time = ((logs / f"{tasks}_{number}.log").read_text() for number in (1, 2))
         self.assertIn("stopped by signal 10", out_of_time)
         self.assertIn("continuing from", out_of_time)
+        # Slurm lets it go on before it ends it: it may come to its end, and is kept when it begins again.
         self.assertIn("DUE TO JOB REQUEUE", requeued)
-        self.assertIn("stopped by signal 15", requeued)
-        self.assertIn("continuing from", requeued)
+        if "stopped by signal 15" in requeued:
+            self.assertIn("continuing from", requeued)
+        else:
+            self.assertIn("0 done, 1 kept", requeued)
         gathered = (logs / f"{tables}.log").read_text()
         self.assertIn("data sets    5 done, 0 kept, of 6", gathered)
         self.assertIn("failed       labelled_70_cell_1: ", gathered)
