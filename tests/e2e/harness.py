@@ -12,7 +12,7 @@ HEADER = "x [nm],y [nm],z [nm],uncertainty_x [nm],uncertainty_y [nm],uncertainty
 QUICK = """
 registration: {starts: [imaged], symmetry: none}
 expert:
-  anneal: {rotations: 300, sweeps: 12}
+  anneal: {rotations: 300, sweeps: 8}
   proposals: {most_proposals: 0}
   refine: {noise_tries: 1, calibrations: 1, most_searches: 1, rotations: 500, basins: 2, fewest_centres: 32}
   verdict: {draws: 1}
