@@ -1,6 +1,10 @@
 #include "factor_model.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "polar/core/constants.hpp"
@@ -37,9 +41,11 @@ void start_fields(FactorModel& m, const std::vector<std::vector<Label>>& labels)
           m.variance_nm2 * label_precision(m, label) * (label.displacement_nm - m.mean_nm.col(label.site));
       d.row(static_cast<Eigen::Index>(p)).segment<3>(3 * label.site) = known.transpose();
     }
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(d, Eigen::ComputeThinV);
-  for (Eigen::Index k = 0; k < std::min(modes, svd.singularValues().size()); ++k)
-    m.field_nm.col(k) = svd.matrixV().col(k) * svd.singularValues()[k] / std::sqrt(double(labels.size()));
+  const Eigen::MatrixXd scatter = d.transpose() * d / double(labels.size());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scatter);
+  for (Eigen::Index k = 0; k < std::min(modes, n); ++k)  // in ascending order
+    m.field_nm.col(k) =
+        axes.eigenvectors().col(n - 1 - k) * std::sqrt(std::max(0.0, axes.eigenvalues()[n - 1 - k]));
 }
 
 // Sums over particles that one site's mean and fields follow from.
@@ -107,8 +113,9 @@ void standardise(FactorModel& m, const std::vector<std::vector<Label>>& labels) 
   if (n > 0) m.field_nm = (m.field_nm * Eigen::MatrixXd((zz / n).llt().matrixL())).eval();
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> rigid(m.motion);
   m.field_nm -= m.motion * rigid.solve(m.field_nm);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(m.field_nm, Eigen::ComputeThinU);
-  m.field_nm = svd.matrixU() * svd.singularValues().asDiagonal();
+  const Eigen::MatrixXd gram = m.field_nm.transpose() * m.field_nm;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(gram);
+  m.field_nm = (m.field_nm * axes.eigenvectors().rowwise().reverse()).eval();
 }
 }  // namespace
 

@@ -24,6 +24,7 @@ constexpr std::size_t kMostSites = 128;
 constexpr std::size_t kMostLocalisations = 20000;  // that positions are refined from
 constexpr int kMostSteps = 100;
 constexpr double kStill_nm = 1e-3;  // a step that changes every centre and width by less ends the refinement
+constexpr double kNearlyStill_nm = 0.1;  // the same while sites that are one are still looked for
 constexpr double kLeastBackground = 1e-3;
 constexpr double kApart = 3;              // standard deviations between sites that are told apart
 constexpr double kMostBackground = 0.35;  // share of localisations at no site of a discrete template
@@ -188,10 +189,13 @@ Model fit(const Table& t, const std::vector<Eigen::Vector3d>& start, const Volum
   }
   std::vector<std::uint32_t> rows = random_order(t.size(), KeyedRandom(1, 0, kSampleStage));
   rows.resize(std::min(rows.size(), kMostLocalisations));
-  do {
-    for (int i = 0; i < kMostSteps && step(m, t, rows) > kStill_nm; ++i) {
-    }
-  } while (drop_one_of_two(m, sigma));
+  for (const double still_nm : {kNearlyStill_nm, kStill_nm}) {
+    do {
+      for (int i = 0; i < kMostSteps && step(m, t, rows) > still_nm; ++i) {
+      }
+    } while (drop_one_of_two(m, sigma));
+    if (m.background_share > kMostBackground) break;  // it has no sites
+  }
   return m;
 }
 }  // namespace

@@ -12,7 +12,7 @@ SITES = [(0, 0, 0), (60, 5, -10), (25, 50, 5), (-40, 30, 20), (-55, -20, -15), (
          (10, 20, 60), (-15, 15, -50)]
 NAMES = ["x [nm]", "y [nm]", "z [nm]", "uncertainty_x [nm]", "uncertainty_y [nm]", "uncertainty_z [nm]", "particle",
          "frame", "intensity [photon]"]
-FAST = QUICK.replace("[imaged]", "random") + "output: {formats: [hdf5, csv, picasso, thunderstorm]}\n"
+FAST = QUICK.replace("[imaged]", "random").replace("sweeps: 8", "sweeps: 24") + "output: {formats: [hdf5, csv, picasso, thunderstorm]}\n"
 
 
 def exact(value_nm):

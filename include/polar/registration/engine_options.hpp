@@ -96,7 +96,7 @@ struct VerdictOptions {
   double doubtful_standard_errors = 1;  // by which it must explain more at all, or there is none; chosen
   double cloud_standard_errors = 5;     // by which a structure must explain more than a cloud; chosen
   double enough_standard_errors = 6;    // beyond which no more draws are made; chosen
-  double most_gain = 1;  // nat a localisation over a cloud, either way, that a view counts for; chosen
+  double most_gain = 0.5;  // nat a localisation over a cloud, either way, that a view counts for; measured
   double least_accepted_share = 0.3;  // of the particles when a structure counts as found; chosen
 };
 

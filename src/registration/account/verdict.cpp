@@ -19,7 +19,8 @@ std::string text(const char* pattern, double a, double b) {
 }  // namespace
 
 Comparison over_cloud(const Evidence& cloud, const Evidence& structure, const VerdictOptions& options) {
-  // A localisation that the sharp template misses altogether must not outweigh all that it explains.
+  // Localisations that the sharp template misses altogether must not outweigh all that it explains, nor a few
+  // views that agree by chance all others.
   Evidence bounded = structure;
   for (std::size_t i = 0; i < bounded.size(); ++i)
     bounded[i] = cloud[i] + std::clamp(structure[i] - cloud[i], -options.most_gain, options.most_gain);
@@ -53,9 +54,10 @@ void judge_registration(const Evidence& cloud, const Evidence& evidence, const V
   out.verdict = clear && posed ? Verdict::found : Verdict::ambiguous;
   out.verdict_reason =
       text(clear ? "localisations kept apart are explained by %.2f +- %.2f nat better than by a cloud"
-                 : "localisations kept apart are explained by only %.2f +- %.2f nat better than by a cloud: "
-                   "they may have no structure in common",
+                 : "localisations kept apart are explained by only %.2f +- %.2f nat better than by a cloud",
            c.gain, c.standard_error) +
+      text(", no particle counting for more than %.2f%.0s", options.most_gain, 0) +
+      (clear ? "" : ": they may have no structure in common") +
       text(posed ? "; the pose of %.0f %% of the particles is determined"
                  : "; the pose of only %.0f %% of the particles is determined",
            100 * share, 0);

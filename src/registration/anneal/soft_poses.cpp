@@ -221,13 +221,21 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
   std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising) - 1, order.end(),
                    better);
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising));
+  const auto by_score = [](const Draw& a, const Draw& b) { return a.score > b.score; };
   std::vector<Draw> found(promising);
-  const auto first = static_cast<float>(view.shift), step = static_cast<float>(options_.shift);
   for (std::size_t k = 0; k < promising; ++k) {
-    Draw& d = found[k];
-    d.pose = {grid[order[k]], centre};
-    d.score = score(d.pose);
-    for (float ring = first; ring > 0.4f * step; ring *= 0.5f) {
+    found[k].pose = {grid[order[k]], centre};
+    found[k].score = score(found[k].pose);
+  }
+  const auto first = static_cast<float>(view.shift), step = static_cast<float>(options_.shift);
+  std::size_t moved = promising;
+  for (float ring = first; ring > 0.4f * step; ring *= 0.5f, moved = (moved + 1) / 2) {
+    if (moved < promising) {  // those that gained little so far are no longer worth a step
+      std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(moved) - 1, found.end(),
+                       by_score);
+    }
+    for (std::size_t k = 0; k < moved; ++k) {
+      Draw& d = found[k];
       const Eigen::Vector3f from = d.pose.translation;
       Eigen::Vector3f there[6];
       float at[6];
@@ -239,7 +247,6 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
         if (at[s] > d.score) d.score = at[s], d.pose.translation = there[s];
     }
   }
-  const auto by_score = [](const Draw& a, const Draw& b) { return a.score > b.score; };
   if (beta >= options_.climbing_beta) {
     std::stable_sort(found.begin(), found.end(), by_score);
     std::vector<Draw> peaks;
@@ -251,25 +258,53 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
       d.score = climb(score, centre, static_cast<float>(0.7 * spacing), 0.6f * step, 2, planar, d.pose);
       peaks.push_back(d);
     }
-    for (int k = 0; k < options_.kept && !view.last.empty(); ++k) {
-      Draw d{view.last[random.below(view.last.size())], 0, 0};
-      d.score = climb(score, centre, static_cast<float>(0.3 * spacing), 0.4f * step, 1, planar, d.pose);
-      peaks.push_back(d);
-    }
-    std::stable_sort(peaks.begin(), peaks.end(), by_score);
-    found.clear();  // one of every mode
-    const auto near = static_cast<float>(options_.same_mode_deg * kRadiansPerDegree);
-    for (const Draw& d : peaks)
-      if (std::none_of(found.begin(), found.end(), [&](const Draw& o) {
-            return angle_between(o.pose.rotation, d.pose.rotation) < near &&
-                   (o.pose.translation - d.pose.translation).norm() < 0.8f * step;
-          }))
-        found.push_back(d);
+    for (int k = 0; k < options_.kept && !view.last.empty(); ++k)
+      peaks.push_back(climbed_again(view, score, spacing, view.last[random.below(view.last.size())]));
+    found = one_of_every_mode(std::move(peaks));
   }
+  weigh(beta, found);
+  return found;
+}
+
+// The modes of the last sweep, wherever they have moved to.
+std::vector<SoftAnnealer::Draw> SoftAnnealer::followed(const Looked& view, double spacing) const {
+  const Scorer score(view.volume, view.few, prior_, view.centre, view.shift, 1 / std::max(view.beta, 0.02));
+  std::vector<Draw> found;
+  for (const SoftPose& p : view.last) found.push_back({p, score(p), 0});
+  found = one_of_every_mode(std::move(found));
+  for (Draw& d : found) d = climbed_again(view, score, spacing, d.pose);
+  found = one_of_every_mode(std::move(found));
+  weigh(view.beta, found);
+  return found;
+}
+
+SoftAnnealer::Draw SoftAnnealer::climbed_again(const Looked& view, const Scorer& score, double spacing,
+                                               const SoftPose& from) const {
+  Draw d{from, 0, 0};
+  d.score = climb(score, view.centre, static_cast<float>(0.3 * spacing),
+                  0.4f * static_cast<float>(options_.shift), 1, problem_.planar(), d.pose);
+  return d;
+}
+
+std::vector<SoftAnnealer::Draw> SoftAnnealer::one_of_every_mode(std::vector<Draw> peaks) const {
+  std::stable_sort(peaks.begin(), peaks.end(),
+                   [](const Draw& a, const Draw& b) { return a.score > b.score; });
+  std::vector<Draw> found;
+  const auto near = static_cast<float>(options_.same_mode_deg * kRadiansPerDegree);
+  const auto step = static_cast<float>(options_.shift);
+  for (const Draw& d : peaks)
+    if (std::none_of(found.begin(), found.end(), [&](const Draw& o) {
+          return angle_between(o.pose.rotation, d.pose.rotation) < near &&
+                 (o.pose.translation - d.pose.translation).norm() < 0.8f * step;
+        }))
+      found.push_back(d);
+  return found;
+}
+
+void SoftAnnealer::weigh(double beta, std::vector<Draw>& found) {
   float top = -INFINITY;
   for (const Draw& d : found) top = std::max(top, d.score);
   for (Draw& d : found) d.weight = std::exp(beta * static_cast<double>(d.score - top));
-  return found;
 }
 
 void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& which, const Sweep& sweep,
@@ -315,7 +350,9 @@ void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& whic
     const LookupPoints fewer = first_of(few, std::max(std::min(few.count, 24), few.count / 2));
     const double b = sweep.beta * all.count / few.count;  // the few stand for all
     const Looked view{few, fewer, volume, state.sample[i], centre, b, shift_[i]};
-    const std::vector<Draw> found = candidates(view, grid, spacing, random);
+    const std::vector<Draw> found = sweep.follows && !view.last.empty()
+                                        ? followed(view, spacing)
+                                        : candidates(view, grid, spacing, random);
     double total = 0;
     const Draw* likeliest = &found.front();
     for (const Draw& d : found) {
@@ -362,12 +399,12 @@ void SoftAnnealer::continue_under(const AnnealStage& stage, std::uint64_t key, S
     const double f = stage.sweeps > 1 ? static_cast<double>(t) / (stage.sweeps - 1) : 1.0;
     const double g = std::min(1.0, f / stage.narrowing);
     const bool early = stage.from_nothing && f < 0.5;
-    draw_poses(
-        all_, which_,
-        {geometric(stage.first_beta, stage.last_beta, g), early ? options_.rotations / 2 : options_.rotations,
-         early ? options_.first_localisations : options_.localisations,
-         key * 1024 + static_cast<std::uint64_t>(t)},
-        state);
+    const double beta = geometric(stage.first_beta, stage.last_beta, g);
+    draw_poses(all_, which_,
+               {beta, early ? options_.rotations / 2 : options_.rotations,
+                early ? options_.first_localisations : options_.localisations,
+                key * 1024 + static_cast<std::uint64_t>(t), t % 2 == 1 && beta >= options_.climbing_beta},
+               state);
     fuse(geometric(stage.first_width, stage.last_width, g), state);
   }
 }
@@ -398,8 +435,10 @@ Evidence SoftAnnealer::judge(SoftState state, std::uint64_t key, const Problem& 
     if (t == 0) state.sample.assign(problem_.size(), {});
     for (std::size_t f = 0; f < folds; ++f) {
       SoftState one = under_others(f, state);
-      draw_poses(fitted, members[f],
-                 {options_.last_beta, options_.rotations, options_.localisations, key * 1024 + 512 + t}, one);
+      draw_poses(
+          fitted, members[f],
+          {options_.last_beta, options_.rotations, options_.localisations, key * 1024 + 512 + t, t == 1},
+          one);
       for (const int v : members[f]) {
         const auto i = static_cast<std::size_t>(v);
         state.sample[i] = std::move(one.sample[i]), state.best[i] = one.best[i];

@@ -15,6 +15,9 @@ namespace {
 
 // What looks alike under it and is no heptagon is alike under any turn.
 constexpr const char* kAnyTurn = "C7";
+// Most groups hold it, whichever of their axes comes to lie along z, so that from nothing it is found where a
+// search under a larger group puts an axis across the structure's.
+constexpr const char* kFromNothing = "D2";
 
 struct Trial {
   std::string group;
@@ -54,9 +57,18 @@ class Trials {
     annealer_.continue_under(stage(1), 1990, coarse_);
   }
 
-  /// Groups that the coarse template hints at, C1 first.
+  Trial plain(std::uint64_t key) { return run({"C1", {}, 1}, key); }
+
+  /// From now on hints come from this template.
+  void look_at(const Trial& trial) {
+    coarse_ = trial.state;
+    coarse_.group.clear();
+    similarity_ = SelfSimilarity(coarse_.density, o_.similarity_blur);
+  }
+
+  /// Groups that the template hints at.
   std::vector<SymmetryFrame> hinted(const std::string& asked) {
-    std::vector<SymmetryFrame> out = {{"C1", {}, 1}};
+    std::vector<SymmetryFrame> out;
     SymmetryFrame axial = best_frame(similarity_, kAnyTurn, o_.hint);
     // In the plane the axis is known, and a resolved template must not be moved to look alike under a wrong
     // turn.
@@ -191,7 +203,9 @@ bool is_free(const Trial& trial, const Trial& best, const EngineOptions& options
                            : posed            ? 0
                                               : options.symmetry.means_standard_errors;
   const Comparison c = compare(best.evidence, trial.evidence);
-  return c.better_by(-tolerance) && c.gain > -options.symmetry.means_loss;
+  // Few views do not say how much it costs: then it is not free.
+  const double surely = c.gain - options.evidence.standard_errors * c.standard_error;
+  return c.better_by(-tolerance) && surely > -options.symmetry.means_loss;
 }
 
 // The best one, and what contains it as long as that is free.
@@ -238,6 +252,12 @@ SymmetryChoice choose_symmetry(const Problem& problem, const RegistrationOptions
     ++key;
     progress.step("symmetry", static_cast<int>(trials.size()), static_cast<int>(trials.size()) + 1);
   };
+  add(all.plain(key));
+  if (!problem.planar() && !posed) {
+    // A template without any group may have spots too bright to hint at its axes.
+    add(all.from_nothing(kFromNothing, key));
+    if (compare(trials[0].evidence, trials[1].evidence).better_by(0)) all.look_at(trials[1]);
+  }
   for (const SymmetryFrame& f : all.hinted(cyclic)) {
     if (progress.cancelled()) return out;
     add(all.run(f, key));
