@@ -24,9 +24,12 @@ constexpr std::size_t kMostSites = 128;
 constexpr std::size_t kMostLocalisations = 20000;  // that positions are refined from
 constexpr int kMostSteps = 100;
 constexpr double kStill_nm = 1e-3;  // a step that changes every centre and width by less ends the refinement
-constexpr double kNearlyStill_nm = 0.1;  // the same while sites that are one are still looked for
+// The same, and what is enough, while sites that are one are still looked for.
+constexpr double kNearlyStill_nm = 0.1;
+constexpr std::size_t kEnoughLocalisations = 5000;
 constexpr double kLeastBackground = 1e-3;
 constexpr double kApart = 3;              // standard deviations between sites that are told apart
+constexpr double kClearly = 0.7;          // of it: nearer ones are none whatever more localisations say
 constexpr double kMostBackground = 0.35;  // share of localisations at no site of a discrete template
 constexpr double kHotSpot = 5;            // standard errors
 constexpr double kSmallestWidth_nm = 0.1;
@@ -173,6 +176,15 @@ bool drop_one_of_two(Model& m, double sigma) {
   return m.site.size() < before;
 }
 
+// Why a template with these sites is none of sites; empty: it is one. `slack`: of the distances asked for.
+std::string not_discrete(const Model& m, double sigma, double slack) {
+  if (m.site.empty() || m.background_share > kMostBackground) return "most of it lies between its maxima";
+  for (std::size_t k = 0; k < m.site.size(); ++k)
+    if (nearest_nm(m.site, k) < slack * kApart * std::hypot(sigma, m.site[k].width_nm))
+      return "its maxima are not far enough apart to be told from one another";
+  return {};
+}
+
 Model fit(const Table& t, const std::vector<Eigen::Vector3d>& start, const Volume& box, double sigma) {
   Model m;
   m.planar = t.planar;
@@ -187,15 +199,17 @@ Model fit(const Table& t, const std::vector<Eigen::Vector3d>& start, const Volum
     s.share = (1 - m.background_share) / static_cast<double>(start.size());
     m.site.push_back(s);
   }
-  std::vector<std::uint32_t> rows = random_order(t.size(), KeyedRandom(1, 0, kSampleStage));
-  rows.resize(std::min(rows.size(), kMostLocalisations));
-  for (const double still_nm : {kNearlyStill_nm, kStill_nm}) {
+  const std::vector<std::uint32_t> order = random_order(t.size(), KeyedRandom(1, 0, kSampleStage));
+  const auto settle = [&](std::size_t most, double still_nm) {
+    const std::vector<std::uint32_t> rows(
+        order.begin(), order.begin() + static_cast<std::ptrdiff_t>(std::min(most, order.size())));
     do {
       for (int i = 0; i < kMostSteps && step(m, t, rows) > still_nm; ++i) {
       }
     } while (drop_one_of_two(m, sigma));
-    if (m.background_share > kMostBackground) break;  // it has no sites
-  }
+  };
+  settle(kEnoughLocalisations, kNearlyStill_nm);
+  if (not_discrete(m, sigma, kClearly).empty()) settle(kMostLocalisations, kStill_nm);
   return m;
 }
 }  // namespace
@@ -215,12 +229,8 @@ DiscreteSites find_sites(const Table& t, const RenderOptions& options) {
   out.reason = "its density has more than " + std::to_string(kMostSites) + " maxima";
   if (start.size() > kMostSites) return out;
   Model m = fit(t, start, density, sigma);
-  out.reason = "most of it lies between its maxima";
-  if (m.site.empty() || m.background_share > kMostBackground) return out;
-  out.reason = "its maxima are not far enough apart to be told from one another";
-  for (std::size_t k = 0; k < m.site.size(); ++k)
-    if (nearest_nm(m.site, k) < kApart * std::hypot(sigma, m.site[k].width_nm)) return out;
-  out.reason.clear();
+  out.reason = not_discrete(m, sigma, 1);
+  if (!out.reason.empty()) return out;
   for (Site& s : m.site)
     s.centre_std_nm = std::hypot(sigma, s.width_nm) / std::sqrt(s.share * static_cast<double>(t.size()));
   out.site = m.site;
