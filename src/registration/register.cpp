@@ -179,6 +179,7 @@ class Run {
     timed("symmetry tested");
     const Refiner::AgainstCloud against = against_cloud(grid, problem, fit);
     timed("verdict");
+    if (progress_.cancelled()) return cancelled();
     report_views(problem, options_.engine, fit, out_);
     timed("polish");
     judge_registration(against.cloud, against.structure, options_.engine.verdict, out_);
@@ -268,7 +269,7 @@ class Run {
     const Refiner refiner(other, grid, options_.engine);
     std::vector<Evidence> structure, cloud;
     Refiner::AgainstCloud mean;
-    for (int draw = 1; draw <= o.draws; ++draw) {
+    for (int draw = 1; draw <= o.draws && !progress_.cancelled(); ++draw) {
       hold_out(evidence, static_cast<std::uint64_t>(draw), other);
       Refiner::AgainstCloud one = refiner.judge_against_cloud(fit);
       structure.push_back(std::move(one.structure)), cloud.push_back(std::move(one.cloud));
