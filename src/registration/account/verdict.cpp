@@ -56,7 +56,7 @@ void judge_registration(const Evidence& cloud, const Evidence& evidence, const V
       text(clear ? "localisations kept apart are explained by %.2f +- %.2f nat better than by a cloud"
                  : "localisations kept apart are explained by only %.2f +- %.2f nat better than by a cloud",
            c.gain, c.standard_error) +
-      text(", no particle counting for more than %.2f%.0s", options.most_gain, 0) +
+      text(", no particle counting for more than %.2f", options.most_gain, 0) +
       (clear ? "" : ": they may have no structure in common") +
       text(posed ? "; the pose of %.0f %% of the particles is determined"
                  : "; the pose of only %.0f %% of the particles is determined",

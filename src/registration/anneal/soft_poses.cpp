@@ -83,6 +83,7 @@ struct SoftAnnealer::Draw {
   SoftPose pose;
   float score = 0;  // log likelihood of the points looked at, prior included
   double weight = 0;
+  static bool better(const Draw& a, const Draw& b) { return a.score > b.score; }
 };
 
 SoftAnnealer::SoftAnnealer(const Problem& problem, std::vector<int> which, const AnnealOptions& options,
@@ -191,25 +192,27 @@ void SoftAnnealer::draw_density(const VoxelCounts& counts, double width, SoftSta
 }
 
 struct SoftAnnealer::Looked {
-  const LookupPoints &few, &fewer;  // localisations; the fewer are enough to leave most rotations out
+  const LookupPoints& few;  // localisations
   const LogVolume& volume;
   const std::vector<SoftPose>& last;  // samples of the last sweep
   Eigen::Vector3f centre;
-  double beta, shift;  // standard deviation of the prior of shifts
+  double beta, prior_weight, shift;  // standard deviation of the prior of shifts
+  const Scorer& score;               // of the few
 };
 
-std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
-                                                         const std::vector<Eigen::Matrix3f>& grid,
-                                                         double spacing, KeyedRandom& random) const {
+std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view, const Grid& grid,
+                                                         KeyedRandom& random) const {
   const bool planar = problem_.planar();
-  const double beta = view.beta, prior_weight = 1 / std::max(beta, 0.02);
+  const double beta = view.beta;
   const Eigen::Vector3f& centre = view.centre;
-  const Scorer score(view.volume, view.few, prior_, centre, view.shift, prior_weight);
-  const Scorer coarse(view.volume, view.fewer, prior_, centre, view.shift,
-                      prior_weight * view.fewer.count / std::max(1, view.few.count));
-  const std::size_t n = grid.size();
+  const Scorer& score = view.score;
+  // Enough to leave most rotations out.
+  const LookupPoints fewer = first_of(view.few, std::max(std::min(view.few.count, 24), view.few.count / 2));
+  const Scorer coarse(view.volume, fewer, prior_, centre, view.shift,
+                      view.prior_weight * fewer.count / std::max(1, view.few.count));
+  const std::size_t n = grid.rotation.size();
   std::vector<float> rough(n);
-  for (std::size_t r = 0; r < n; ++r) coarse(grid[r], &centre, 1, &rough[r]);
+  for (std::size_t r = 0; r < n; ++r) coarse(grid.rotation[r], &centre, 1, &rough[r]);
   std::vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
   const std::size_t promising = std::min(
@@ -221,10 +224,9 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
   std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising) - 1, order.end(),
                    better);
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(promising));
-  const auto by_score = [](const Draw& a, const Draw& b) { return a.score > b.score; };
   std::vector<Draw> found(promising);
   for (std::size_t k = 0; k < promising; ++k) {
-    found[k].pose = {grid[order[k]], centre};
+    found[k].pose = {grid.rotation[order[k]], centre};
     found[k].score = score(found[k].pose);
   }
   const auto first = static_cast<float>(view.shift), step = static_cast<float>(options_.shift);
@@ -232,7 +234,7 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
   for (float ring = first; ring > 0.4f * step; ring *= 0.5f, moved = (moved + 1) / 2) {
     if (moved < promising) {  // those that gained little so far are no longer worth a step
       std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(moved) - 1, found.end(),
-                       by_score);
+                       Draw::better);
     }
     for (std::size_t k = 0; k < moved; ++k) {
       Draw& d = found[k];
@@ -248,47 +250,42 @@ std::vector<SoftAnnealer::Draw> SoftAnnealer::candidates(const Looked& view,
     }
   }
   if (beta >= options_.climbing_beta) {
-    std::stable_sort(found.begin(), found.end(), by_score);
+    std::stable_sort(found.begin(), found.end(), Draw::better);
     std::vector<Draw> peaks;
     for (std::size_t k = 0;
          k < std::min<std::size_t>(found.size(), static_cast<std::size_t>(options_.climbed)); ++k) {
       if (k > 3 && beta * static_cast<double>(found[k].score - found[0].score) < -14)
         break;  // e^-14: never drawn
       Draw d = found[k];
-      d.score = climb(score, centre, static_cast<float>(0.7 * spacing), 0.6f * step, 2, planar, d.pose);
+      d.score = climb(score, centre, static_cast<float>(0.7 * grid.spacing), 0.6f * step, 2, planar, d.pose);
       peaks.push_back(d);
     }
     for (int k = 0; k < options_.kept && !view.last.empty(); ++k)
-      peaks.push_back(climbed_again(view, score, spacing, view.last[random.below(view.last.size())]));
+      peaks.push_back(climbed_again(view, grid.spacing, view.last[random.below(view.last.size())]));
     found = one_of_every_mode(std::move(peaks));
   }
-  weigh(beta, found);
   return found;
 }
 
 // The modes of the last sweep, wherever they have moved to.
 std::vector<SoftAnnealer::Draw> SoftAnnealer::followed(const Looked& view, double spacing) const {
-  const Scorer score(view.volume, view.few, prior_, view.centre, view.shift, 1 / std::max(view.beta, 0.02));
   std::vector<Draw> found;
-  for (const SoftPose& p : view.last) found.push_back({p, score(p), 0});
+  for (const SoftPose& p : view.last) found.push_back({p, view.score(p), 0});
   found = one_of_every_mode(std::move(found));
-  for (Draw& d : found) d = climbed_again(view, score, spacing, d.pose);
-  found = one_of_every_mode(std::move(found));
-  weigh(view.beta, found);
-  return found;
+  for (Draw& d : found) d = climbed_again(view, spacing, d.pose);
+  return one_of_every_mode(std::move(found));
 }
 
-SoftAnnealer::Draw SoftAnnealer::climbed_again(const Looked& view, const Scorer& score, double spacing,
+SoftAnnealer::Draw SoftAnnealer::climbed_again(const Looked& view, double spacing,
                                                const SoftPose& from) const {
   Draw d{from, 0, 0};
-  d.score = climb(score, view.centre, static_cast<float>(0.3 * spacing),
+  d.score = climb(view.score, view.centre, static_cast<float>(0.3 * spacing),
                   0.4f * static_cast<float>(options_.shift), 1, problem_.planar(), d.pose);
   return d;
 }
 
 std::vector<SoftAnnealer::Draw> SoftAnnealer::one_of_every_mode(std::vector<Draw> peaks) const {
-  std::stable_sort(peaks.begin(), peaks.end(),
-                   [](const Draw& a, const Draw& b) { return a.score > b.score; });
+  std::stable_sort(peaks.begin(), peaks.end(), Draw::better);
   std::vector<Draw> found;
   const auto near = static_cast<float>(options_.same_mode_deg * kRadiansPerDegree);
   const auto step = static_cast<float>(options_.shift);
@@ -307,32 +304,40 @@ void SoftAnnealer::weigh(double beta, std::vector<Draw>& found) {
   for (Draw& d : found) d.weight = std::exp(beta * static_cast<double>(d.score - top));
 }
 
+// Turned in every sweep. One that follows modes needs the spacing only.
+SoftAnnealer::Grid SoftAnnealer::grid_of(const Sweep& sweep, const RotationGroup& group) const {
+  KeyedRandom turns(problem_.seed, sweep.key, kGridStage);
+  const std::size_t order = std::max<std::size_t>(1, group.size());
+  Grid grid;
+  if (problem_.planar()) {
+    const double first = turns.uniform();
+    grid.spacing = kTwoPi / options_.planar_rotations;
+    const int n = sweep.follows ? 0 : options_.planar_rotations / static_cast<int>(order);
+    for (int i = 0; i < n; ++i)
+      grid.rotation.push_back(so3_exp({0, 0, grid.spacing * (i + first)}).cast<float>());
+    return grid;
+  }
+  // Some of the rotations that a prior or a group leaves out are spent on the others.
+  const int whole =
+      std::min(options_.most_rotations,
+               static_cast<int>(sweep.rotations * std::max(1.0, options_.prior_share / prior_.share()) *
+                                std::max(1.0, static_cast<double>(order) * options_.unit_share)));
+  grid.spacing = 0.5 * std::cbrt(8 * kPi * kPi / whole);
+  if (sweep.follows) return grid;
+  const Eigen::Matrix3f turn = turns.rotation().cast<float>();
+  for (const Eigen::Quaternionf& q : super_fibonacci(whole)) {
+    const Eigen::Matrix3f r = q.toRotationMatrix() * turn;
+    if (prior_.allows(r) && in_asymmetric_unit(group, r)) grid.rotation.push_back(r);
+  }
+  if (grid.rotation.empty())  // of a narrow prior and a large group
+    grid.rotation.push_back(Eigen::Matrix3f::Identity());
+  return grid;
+}
+
 void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& which, const Sweep& sweep,
                               SoftState& state) const {
   const bool planar = problem_.planar();
-  KeyedRandom turns(problem_.seed, sweep.key, kGridStage);
-  std::vector<Eigen::Matrix3f> grid;
-  double spacing = 0;
-  if (planar) {
-    const auto n = options_.planar_rotations / static_cast<int>(std::max<std::size_t>(1, state.group.size()));
-    const double first = turns.uniform();
-    spacing = kTwoPi / options_.planar_rotations;
-    for (int i = 0; i < n; ++i) grid.push_back(so3_exp({0, 0, spacing * (i + first)}).cast<float>());
-  } else {
-    // Some of the rotations that a prior or a group leaves out are spent on the others.
-    const auto order = static_cast<double>(std::max<std::size_t>(1, state.group.size()));
-    const int whole =
-        std::min(options_.most_rotations,
-                 static_cast<int>(sweep.rotations * std::max(1.0, options_.prior_share / prior_.share()) *
-                                  std::max(1.0, order * options_.unit_share)));
-    const Eigen::Matrix3f turn = turns.rotation().cast<float>();
-    for (const Eigen::Quaternionf& q : super_fibonacci(whole)) {
-      const Eigen::Matrix3f r = q.toRotationMatrix() * turn;
-      if (prior_.allows(r) && in_asymmetric_unit(state.group, r)) grid.push_back(r);
-    }
-    if (grid.empty()) grid.push_back(Eigen::Matrix3f::Identity());  // of a narrow prior and a large group
-    spacing = 0.5 * std::cbrt(8 * kPi * kPi / whole);
-  }
+  const Grid grid = grid_of(sweep, state.group);
   const LogVolume volume(state.density, state.outlier_fraction, outlier_density(planar));
   Eigen::Vector3f centre = state.density.centroid().cast<float>();
   if (!state.group.empty()) {  // on every axis of the group
@@ -347,21 +352,20 @@ void SoftAnnealer::draw_poses(const Points& points, const std::vector<int>& whic
     if (all.count == 0) return;
     KeyedRandom random(problem_.seed, i + (sweep.key << 32), kPoseStage);
     const LookupPoints few = some_of(all, static_cast<std::size_t>(sweep.localisations), random);
-    const LookupPoints fewer = first_of(few, std::max(std::min(few.count, 24), few.count / 2));
     const double b = sweep.beta * all.count / few.count;  // the few stand for all
-    const Looked view{few, fewer, volume, state.sample[i], centre, b, shift_[i]};
-    const std::vector<Draw> found = sweep.follows && !view.last.empty()
-                                        ? followed(view, spacing)
-                                        : candidates(view, grid, spacing, random);
+    const double warm = std::max(b, 0.02), prior_weight = 1 / warm;
+    const Scorer score(volume, few, prior_, centre, shift_[i], prior_weight);
+    const Looked view{few, volume, state.sample[i], centre, b, prior_weight, shift_[i], score};
+    std::vector<Draw> found = sweep.follows ? followed(view, grid.spacing) : candidates(view, grid, random);
+    weigh(b, found);
     double total = 0;
     const Draw* likeliest = &found.front();
     for (const Draw& d : found) {
       total += d.weight;
       if (d.score > likeliest->score) likeliest = &d;
     }
-    const Scorer score(volume, few, prior_, centre, shift_[i], 1 / std::max(b, 0.02));
-    const double turn = std::min(spacing, options_.jitter_turn / std::sqrt(std::max(b, 0.02)));
-    const double shift = std::min(0.08, options_.jitter_shift / std::sqrt(std::max(b, 0.02)));
+    const double turn = std::min(grid.spacing, options_.jitter_turn / std::sqrt(warm));
+    const double shift = std::min(0.08, options_.jitter_shift / std::sqrt(warm));
     const int samples = options_.samples;
     std::vector<SoftPose> drawn;
     double sum = 0;

@@ -44,8 +44,6 @@ struct AnnealStage {
 /// Of a template that is grown again from few poses.
 AnnealStage growth_stage(const EngineOptions& options);
 
-class Scorer;
-
 class SoftAnnealer {
  public:
   /// Of the views `which`. The problem outlives the object.
@@ -79,10 +77,13 @@ class SoftAnnealer {
  private:
   struct Draw;
   struct Looked;  // one view, as a sweep looks at it
-  std::vector<Draw> candidates(const Looked& view, const std::vector<Eigen::Matrix3f>& grid, double spacing,
-                               KeyedRandom& random) const;
+  struct Grid {
+    std::vector<Eigen::Matrix3f> rotation;
+    double spacing = 0;  // rad
+  };
+  std::vector<Draw> candidates(const Looked& view, const Grid& grid, KeyedRandom& random) const;
   std::vector<Draw> followed(const Looked& view, double spacing) const;
-  Draw climbed_again(const Looked& view, const Scorer& score, double spacing, const SoftPose& from) const;
+  Draw climbed_again(const Looked& view, double spacing, const SoftPose& from) const;
   std::vector<Draw> one_of_every_mode(std::vector<Draw> peaks) const;
   static void weigh(double beta, std::vector<Draw>& found);
   using Points = std::vector<LookupPoints>;  // of every view of the problem
@@ -93,8 +94,9 @@ class SoftAnnealer {
     double beta;
     int rotations, localisations;
     std::uint64_t key;
-    bool follows;  // modes of the last sweep only
+    bool follows;  // modes of the last sweep only, in which every view took part
   };
+  Grid grid_of(const Sweep& sweep, const RotationGroup& group) const;
   void draw_poses(const Points& points, const std::vector<int>& which, const Sweep& sweep,
                   SoftState& state) const;
 
